@@ -24,12 +24,22 @@ from cutcell.errors import MissingLibraryError, ParameterError
 from .render_flags import CHOICES, PICTURE, SETTINGS, WHAT
 
 PageAddress = Annotated[
-    str | None,
+    list[str] | None,
     typer.Option(
         "--address",
         metavar="URL",
         help="Draw what a page of this address shows, from its camera. Other options come first."
-        " The page's character is not opened.",
+        " The page's character is not opened. Given several times: the panels of a figure, from"
+        " one camera.",
+        rich_help_panel=WHAT,
+    ),
+]
+Captions = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--caption",
+        metavar="TEXT",
+        help="Of a figure's panel; given once for each.",
         rich_help_panel=WHAT,
     ),
 ]
@@ -51,6 +61,8 @@ EPILOG = """Examples:
 
 - `cutcell render character.glb --panel compare --methods now,bone_heat,artist compare.png`
 
+- `cutcell render character.glb --address "?panel=weights" --address "?panel=distance" figure.pdf`
+
 - `cutcell render character.glb character.html`"""
 INTERACTIVE = {"rig", "out", "panel", "bone", "skeleton_file", "quiet", *METHOD_OPTIONS}
 """Parameters of the command that an interactive page follows."""
@@ -68,8 +80,8 @@ def render(
         Path,
         typer.Argument(
             metavar="OUT",
-            help="A picture: .png or .jpg. What moves is a film: .mp4 or .gif. An interactive page"
-            " that needs no server: .html.",
+            help="A picture: .png or .jpg. A figure for print: .pdf or .svg. What moves is a film:"
+            " .mp4 or .gif. An interactive page that needs no server: .html.",
         ),
     ],
     *,
@@ -79,13 +91,14 @@ def render(
     options: dict[str, Any],
     networks: Networks = None,
     address: PageAddress = None,
+    caption: Captions = None,
     skeleton_file: SkeletonFile = None,
     quiet: Annotated[
         bool,
         typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES),
     ] = False,
 ) -> None:
-    """Draw a character as the page shows it, into a picture, a film or an interactive page.
+    """Draw a character as the page shows it: a picture, a figure, a film or an interactive page.
 
     Weights are computed first; nothing of the character's file is changed.
     """
@@ -99,59 +112,82 @@ def render(
     moves = (
         picture["turntable"] or swept or (choices["clip"] is not None and choices["time"] is None)
     )
-    kind = film.check_picture_file(out, moves=moves)
+    pages = [scenes.read_address(text) for text in address or []] or [scenes.Address()]
+    is_figure = len(pages) > 1 or caption is not None
+    kind = film.check_picture_file(out, moves, len(pages) if is_figure else 0)
     scenes.check_picture(**picture, kind=kind)
     size = _size(picture.pop("size")) or (FILM_SIZE if moves else PICTURE_SIZE)
     from cutcell.io import load
     from cutcell.io.files import naming
 
-    page = scenes.read_address(address) if address else scenes.Address()
-    method = chosen_method(
-        {**options, **{name: v for name, v in page.method.items() if name not in given}}
-    )
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
     choices["turn"] = _turn(choices["turn"])
     names = [name.strip() for name in choices["methods"].split(",") if name.strip()]
-    choices |= {
-        "panel": choices["panel"] or page.panel or "weights",
-        "bone": choices["bone"] or page.bone,
-        "methods": names or page.methods,
-    }
-    shown = page.without(given) | scenes.settings_of(**settings)
-    chosen = scenes.Choices(**choices, settings=shown, method=method)
+    chosen = []
+    for page in pages:
+        of_page = {
+            "panel": choices["panel"] or page.panel or "weights",
+            "bone": choices["bone"] or page.bone,
+            "methods": names or page.methods,
+        }
+        shown = page.without(given) | scenes.settings_of(**settings)
+        method = chosen_method(
+            {**options, **{name: v for name, v in page.method.items() if name not in given}}
+        )
+        chosen.append(scenes.Choices(**{**choices, **of_page}, settings=shown, method=method))
     # A wrong name is refused before anything long begins.
     with naming(rig):
-        scenes.check(loaded, chosen, picture["view"])
-    from cutcell.binding import bind
-
-    no_skeleton = not len(loaded.skeleton.joints)
-    textures = scenes.textures_for(loaded, chosen)
+        for one in chosen:
+            scenes.check(loaded, one, picture["view"])
     with progress_bars(quiet) as progress:
-        binding = None if no_skeleton else bind(loaded, method=method, progress=progress)
-        computed = {
-            "binding": binding,
-            "resolution": method.resolution if "resolution" in given else None,
-            "progress": progress,
-        }
-        frames = ()
+        frames, warnings = _describe(
+            loaded,
+            chosen,
+            "resolution" in given,
+            film.FRAMES.get(kind) if swept else None,
+            progress,
+        )
+        eye = next((page.camera for page in pages if page.camera), None)
+        order = scenes.order(loaded, frames[-1], chosen[0], size=size, eye=eye, **picture)
         if swept:
-            frames = scenes.describe_sweep(loaded, chosen, film.FRAMES[kind], **computed)
-            description = frames[-1]
-        else:
-            description = scenes.describe(loaded, chosen, textures=textures, **computed)
-        order = scenes.order(loaded, description, chosen, size=size, eye=page.camera, **picture)
-        order = replace(order, scenes=frames)
+            order = replace(order, scenes=frames)
+        elif is_figure:
+            order = replace(order, panels=frames, captions=tuple(caption or ()))
         worker.draw_apart(order, out, progress)
     if not quiet:
-        print_warnings(
-            [
-                *loaded.warnings,
-                *(binding.warnings if binding else ()),
-                *(textures.notes if textures else ()),
-            ]
-        )
-        print_line(f"{out}: {size[0]} x {size[1]} pixels, {_kilobytes(out)}")
+        print_warnings([*loaded.warnings, *warnings])
+        pixels = "" if is_figure or kind in film.FIGURES[:2] else f"{size[0]} x {size[1]} pixels, "
+        print_line(f"{out}: {pixels}{_kilobytes(out)}")
+
+
+def _describe(
+    rig: Any, chosen: list[Any], has_resolution: bool, rate: int | None, progress: Any
+) -> tuple[tuple[Any, ...], list[str]]:
+    """Return the scene of each of some choices, or all scenes of a sweep, and what to warn of."""
+    from cutcell.binding import bind
+
+    from . import render as scenes
+
+    described: list[Any] = []
+    bindings: dict[Any, Any] = {}
+    warnings: list[str] = []
+    for one in chosen:
+        method, textures = one.method, scenes.textures_for(rig, one)
+        if method not in bindings and len(rig.skeleton.joints):
+            bindings[method] = bind(rig, method=method, progress=progress)
+            warnings += bindings[method].warnings
+        computed: dict[str, Any] = {
+            "binding": bindings.get(method),
+            "resolution": method.resolution if has_resolution else None,
+            "progress": progress,
+        }
+        if rate is not None:
+            described += scenes.describe_sweep(rig, one, rate, **computed)
+        else:
+            described.append(scenes.describe(rig, one, textures=textures, **computed))
+        warnings += textures.notes if textures else ()
+    return tuple(described), list(dict.fromkeys(warnings))
 
 
 def _write_page(

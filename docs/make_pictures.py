@@ -8,6 +8,7 @@ Those of the page need a Chromium; see scripts/get_chromium.py.
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 from dataclasses import replace
@@ -76,7 +77,7 @@ def figures() -> None:
     """Run the commands of docs/pictures.md whose pictures are shown there."""
     document = (ROOT / "docs" / "pictures.md").read_text(encoding="utf-8")
     for command in re.findall(r"^cutcell render (.* figure-.*)$", document, re.MULTILINE):
-        rig, out, *options = command.split()
+        rig, out, *options = shlex.split(command)
         argv = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
         size = "x".join(map(str, SIZE))
         done = [sys.executable, "-m", "cutcell", "render", *argv, "--quiet", "--size", size]

@@ -12,16 +12,20 @@ In a notebook::
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
     from PIL.Image import Image
     from pyvista import Plotter
 
     from .camera import Camera
     from .description import Description
 
-__all__ = ["describe", "plotter", "show"]
+__all__ = ["describe", "figure", "plotter", "show"]
 
 
 def show(
@@ -68,6 +72,55 @@ def show(
         path = Path(folder) / "scene.png"
         draw_apart(Order(description, theme, size, camera, legend=legend), path)
         return Image.open(BytesIO(path.read_bytes()))
+
+
+def figure(
+    descriptions: Sequence[Description],
+    path: str | Path,
+    *,
+    captions: Sequence[str] = (),
+    size: tuple[int, int] = (1200, 900),
+    dark: bool = False,
+    camera: Camera | None = None,
+    legend: bool = True,
+) -> None:
+    """Draw scenes as the panels of one figure, with one camera, letters, captions and a legend.
+
+    Parameters
+    ----------
+    descriptions : sequence of Description
+        Up to six. Each view of a scene is a panel of its own.
+    path : str or Path
+        Its ending selects the format: .pdf or .svg, whose text stays text, or .png.
+    captions : sequence of str
+        One a panel. By default the names of the views, or the titles of legends that differ.
+    size : (int, int)
+        Width and height of a panel's picture in pixels.
+    dark : bool
+    camera : Camera, optional
+        Sees all of every scene when left out.
+    legend : bool
+        Whether there are legends: a single one where all panels have the same scale.
+
+    Raises
+    ------
+    ParameterError
+        More than six panels, none, or another number of captions.
+    FileError
+        Another ending, or the file cannot be written.
+    MissingLibraryError
+        This machine has no OpenGL.
+    """
+    from cutcell.errors import ParameterError
+
+    from .film import Order
+    from .worker import draw_apart
+
+    if not descriptions:
+        raise ParameterError("a figure needs at least one scene")
+    panels, theme = tuple(descriptions), "dark" if dark else "light"
+    order = Order(panels[0], theme, size, camera, legend=legend)
+    draw_apart(replace(order, panels=panels, captions=tuple(captions)), path)
 
 
 def plotter(

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".jpg", ".jpeg")
 FILMS = (".mp4", ".gif")
+FIGURES = (".pdf", ".svg", ".png")
+"""Of several panels, or of one with its text as text."""
+MAX_PANELS = 6
 TURN_SECONDS = 6.0
 LONGEST = 20.0
 """Seconds of a motion that are filmed at most."""
@@ -65,6 +68,10 @@ class Order:
     scenes : tuple of Description
         The frames of a film, instead of a motion. The camera and the legend's place are those of
         `description`.
+    panels : tuple of Description
+        A figure of these instead, each a picture of `size`; views are panels of their own.
+    captions : tuple of str
+        Of all panels; by default what differs between their legends.
     """
 
     description: Description
@@ -78,11 +85,13 @@ class Order:
     page_height: float = PAGE_HEIGHT
     background: str = ""
     scenes: tuple[Description, ...] = ()
+    panels: tuple[Description, ...] = ()
+    captions: tuple[str, ...] = ()
 
-    @property
-    def moves(self) -> bool:
-        """Whether it is a film."""
-        return self.turntable or self.motion is not None or bool(self.scenes)
+    def check(self, path: Path) -> str:
+        """Return the ending of the file's name; see `check_picture_file`."""
+        moves = self.turntable or self.motion is not None or bool(self.scenes)
+        return check_picture_file(path, moves, len(self.panels))
 
 
 def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -92,7 +101,8 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     ----------
     order : Order
     path : str or Path
-        Its ending says what it becomes: .png or .jpg, or .mp4 or .gif for a film.
+        Its ending says what it becomes: .png or .jpg, or .mp4 or .gif for a film, or .pdf, .svg
+        or .png for a figure.
     progress : callable
         See `cutcell.runtime.progress`; may raise to stop.
 
@@ -105,8 +115,14 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
         MP4 without ffmpeg.
     """
     path = Path(path)
-    kind = check_picture_file(path, moves=order.moves)
+    kind = order.check(path)
     progress("drawing", 0.0)
+    if order.panels or kind not in (*PICTURES, *FILMS):
+        from .figures import draw_figure
+
+        draw_figure(order, path, progress)
+        progress("drawing", 1.0)
+        return
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
     from .studio import Studio  # a server orders pictures, and loads no VTK for that
@@ -146,25 +162,32 @@ def ground(name: str, background: str, kind: str = ".png") -> tuple[Theme, bool]
     return replace(theme, top=plain, bottom=plain), False
 
 
-def check_picture_file(path: Path, moves: bool = False) -> str:
-    """Return the ending of a picture's or film's name, in small letters.
+def check_picture_file(path: Path, moves: bool = False, panels: int = 0) -> str:
+    """Return the ending of a picture's, film's or figure's name, in small letters.
 
     Raises
     ------
     FileError
         It is none that can be drawn, or does not fit what is drawn, or has no folder.
+    ParameterError
+        A figure has too many panels, or moves.
     MissingLibraryError
         MP4 without ffmpeg.
     """
     kind = path.suffix.lower()
-    fitting = FILMS if moves else PICTURES
+    if panels > MAX_PANELS:
+        raise ParameterError(f"a figure has at most {MAX_PANELS} panels, not {panels}")
+    if panels and moves:
+        raise ParameterError("a figure of panels does not move: leave out what makes a film")
+    fitting = FILMS if moves else FIGURES if panels else (*PICTURES, *FIGURES[:2])
     if kind not in fitting:
-        other = kind in (*PICTURES, *FILMS)
+        other = kind in (*PICTURES, *FILMS, *FIGURES)
         what = "what moves is stored" if moves else "what stands still is stored"
+        what = "a figure of panels is stored" if panels else what
         raise FileError(
             f"{path.name}: {'' if other else f'a picture cannot be saved as {kind!r}; '}"
             f"{what} as {' or '.join(fitting)}"
-            + ("; ask for a turntable, a clip or a sweep" if other and not moves else "")
+            + ("; ask for a turntable, a clip or a sweep" if kind in FILMS and not panels else "")
         )
     if kind == ".mp4":
         find_ffmpeg()
@@ -194,16 +217,16 @@ def _camera(order: Order, studio: Studio) -> Camera:
     """Return where the order is looked at from, at first."""
     camera, pose = order.camera, order.description.pose
     if camera is None:
-        return studio.camera(order.direction, _box(order, _poses(order)))
+        return studio.camera(order.direction, box_of(order.description, _poses(order)))
     if order.motion is None:
         return camera
     # Who looks closely at a part of the character means that part.
-    if not sees(camera, _points(order, [pose]), studio.shape):
+    if not sees(camera, _points(order.description, [pose]), studio.shape):
         return camera
-    if sees(camera, _points(order, _poses(order)), studio.shape):
+    if sees(camera, _points(order.description, _poses(order)), studio.shape):
         return camera
     way = np.array(camera.position) - np.array(camera.focal_point)
-    return studio.camera(tuple(way.tolist()), _box(order, _poses(order)))
+    return studio.camera(tuple(way.tolist()), box_of(order.description, _poses(order)))
 
 
 def _poses(order: Order) -> list[Any]:
@@ -214,10 +237,10 @@ def _poses(order: Order) -> list[Any]:
     return list(order.motion.sample(np.linspace(0, order.motion.duration, probed)))
 
 
-def _points(order: Order, poses: list[Any]) -> NDArray[np.float64]:
+def _points(description: Description, poses: list[Any]) -> NDArray[np.float64]:
     """Return where the points of all that is to be seen whole are in some poses, shape (n, 3)."""
     reached: list[NDArray[np.float64]] = [np.empty((0, 3))]
-    for actor in order.description.actors.values():
+    for actor in description.actors.values():
         if len(actor.points) and not actor.overlay:
             skin, rest = actor.skin, np.asarray(actor.points, float)
             reached += [
@@ -226,11 +249,11 @@ def _points(order: Order, poses: list[Any]) -> NDArray[np.float64]:
     return np.concatenate(reached)
 
 
-def _box(order: Order, poses: list[Any]) -> NDArray[np.float64]:
+def box_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
     """Return the lowest and highest corner that some poses come to, shape (2, 3)."""
-    points = _points(order, poses)
+    points = _points(description, poses)
     if not len(points):
-        return order.description.bounds
+        return description.bounds
     return np.stack([points.min(axis=0), points.max(axis=0)])
 
 

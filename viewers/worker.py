@@ -20,7 +20,7 @@ from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.subprocesses import python_environment
 from cutcell.runtime.writing import write_all
 
-from .film import Order, check_picture_file, draw
+from .film import Order, draw
 from .opengl import require_opengl
 
 ASK_EVERY = 0.1
@@ -44,7 +44,7 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
         See `draw`; and this machine has no OpenGL.
     """
     path = Path(path)
-    check_picture_file(path, moves=order.moves)
+    order.check(path)
     with tempfile.TemporaryDirectory(prefix="cutcell-draw-") as folder:
         order_path, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
         order_path.write_bytes(pickle.dumps(order))

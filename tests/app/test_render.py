@@ -5,6 +5,7 @@ import gzip
 import inspect
 import json
 import re
+import shlex
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -252,6 +253,10 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.gif", ("--panel", "graph", "--slice", "z", "--sweep", "cut"), "add --cut"),
         ("a.gif", ("--panel", "graph", "--sweep", "slice"), "sweep must be one of"),
         ("a.gif", ("--panel", "distance", "--sweep", "wave", "--clip", "1"), "a clip or a sweep"),
+        ("a.gif", ("--address", "?panel=graph", "--address", "?panel=weights"), ".pdf or .svg"),
+        ("a.jpg", ("--address", "?panel=graph", "--address", "?panel=weights"), ".pdf or .svg"),
+        ("a.pdf", ("--address", "?panel=graph") * 7, "at most 6 panels"),
+        ("a.pdf", ("--address", "?panel=graph") * 2 + ("--turntable",), "does not move"),
         ("a.tga", (), "cannot be saved"),
         ("no/a.png", (), "no folder"),
     ],
@@ -320,7 +325,7 @@ def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
     commands = re.findall(r"^cutcell render (.*)$", DOCUMENT.read_text(), re.MULTILINE)
     assert len(commands) >= 5
     for command in commands:
-        result = run(*command.split())
+        result = run(*shlex.split(command))
         assert result.exit_code == 0, (command, result.stderr)
 
 
@@ -380,6 +385,24 @@ def test_the_address_of_a_page_is_drawn_from_where_it_looks(drawn, tmp_path):
     assert drawn[-1].description.cut.normal == (0, 0, 1)
     assert drawn[-1].camera is None
     assert drawn[-1].direction == VIEWS["back"]
+
+
+def test_addresses_are_the_panels_of_a_figure_with_the_first_camera(drawn, tmp_path):
+    addresses = (
+        "?panel=graph",
+        "?panel=weights&camera=1,2,3,0,1,0",
+        "?panel=distance&falloff=paper",
+    )
+    options = [word for address in addresses for word in ("--address", address)]
+    options += [word for text in "ABC" for word in ("--caption", text)]
+    result = run(demo_path("robot"), tmp_path / "a.pdf", *options)
+    assert result.exit_code == 0, result.stderr
+    titles = [panel.legend.title.split()[0] for panel in drawn[-1].panels]
+    assert titles == ["Graph,", "Each", "Distance"]
+    assert drawn[-1].captions == ("A", "B", "C")
+    assert drawn[-1].camera == Camera((1, 2, 3), (0, 1, 0))
+    assert run(demo_path("robot"), tmp_path / "a.svg").exit_code == 0
+    assert not drawn[-1].panels
 
 
 def test_an_address_opens_the_panel_and_the_settings_it_says(drawn, tmp_path):
