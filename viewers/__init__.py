@@ -89,7 +89,7 @@ def figure(
     Parameters
     ----------
     descriptions : sequence of Description
-        Up to six. Each view of a scene is a panel of its own.
+        Up to six. Each view of a scene is a separate panel.
     path : str or Path
         Its ending selects the format: .pdf or .svg, whose text stays text, or .png.
     captions : sequence of str

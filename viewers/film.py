@@ -69,7 +69,7 @@ class Order:
         The frames of a film, instead of a motion. The camera and the legend's place are those of
         `description`.
     panels : tuple of Description
-        A figure of these instead, each a picture of `size`; views are panels of their own.
+        A figure of these instead, each a picture of `size`; each view is a panel.
     captions : tuple of str
         Of all panels; by default what differs between their legends.
     """

@@ -174,9 +174,9 @@ def test_the_cut_is_filmed_through_the_whole_body(drawn, tmp_path, panel):
 
 def test_no_wave_begins_at_a_bone_that_moves_nothing(rig):
     skeleton = replace(rig.skeleton, deform=[True, False, True])
-    still = replace(rig, skeleton=skeleton, weights=None)
+    partial = replace(rig, skeleton=skeleton, weights=None)
     with pytest.raises(ParameterError, match="elbow"):
-        check(still, Choices("distance", bone="elbow", sweep="wave"))
+        check(partial, Choices("distance", bone="elbow", sweep="wave"))
 
 
 def test_a_finding_is_seen_from_where_it_is_asked_for(drawn, tmp_path):

@@ -34,8 +34,8 @@ def drawn(path, panels, **options):
 
 def texts(path):
     """Return the texts of an SVG."""
-    found = re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text(encoding="utf-8"))
-    return [unescape(text) for text in found]
+    elements = re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text(encoding="utf-8"))
+    return [unescape(text) for text in elements]
 
 
 def test_each_panel_has_a_letter_and_a_caption_and_one_scale_has_one_legend(scenes, tmp_path):
@@ -112,8 +112,8 @@ def test_numbers_of_a_legend_are_read():
 
 
 def test_ends_without_numbers_are_written_as_they_are(scenes, tmp_path):
-    words = replace(scenes[0], legend=Legend("Influences", "count", "few", "many"))
-    assert {"few", "many", "Influences"} <= set(texts(drawn(tmp_path / "a.svg", [words])))
+    named = replace(scenes[0], legend=Legend("Influences", "count", "few", "many"))
+    assert {"few", "many", "Influences"} <= set(texts(drawn(tmp_path / "a.svg", [named])))
 
 
 def test_a_figure_can_be_drawn_from_python(scenes, tmp_path):
