@@ -48,12 +48,15 @@ class Reading:
         Where there are any, the value is an index into these.
     percent : bool
         Whether the value is a share, shown in percent.
+    unit : float
+        What a value of 1 is in the unit that is shown.
     """
 
     text: str = ""
     values: NDArray[np.float32] | None = None
     names: tuple[str, ...] = ()
     percent: bool = False
+    unit: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -63,7 +63,9 @@ def distance_colors(
     legend = distance_legend(rig, joint, limits)
     if unreached:
         legend = replace(legend, swatches=((UNREACHED, "no path leads there"),))
-    return {**style, "reading": Reading(f"from {rig.skeleton.names[joint]}: ")}, legend
+    name = rig.skeleton.names[joint]
+    reading = Reading(f"from {name}: ", unit=longest_side(rig))
+    return {**style, "reading": reading}, legend
 
 
 def distance_look(distance: ArrayLike, limits: tuple[float, float]) -> tuple[dict[str, Any], bool]:
@@ -92,6 +94,16 @@ def shown_distance(distance: ArrayLike, limits: tuple[float, float]) -> NDArray[
 
 
 def distance_legend(rig: Rig, joint: int, limits: tuple[float, float]) -> Legend:
-    """Return the legend of one joint's distance field, in parts of the longest side."""
+    """Return the legend of one joint's distance field; limits are in longest sides."""
     name = rig.skeleton.names[joint]
-    return Legend(f"Distance from {name}", "distance", "0", f"{limits[1]:.2f} of the longest side")
+    return Legend(f"Distance from {name}", "distance", "0", file_units(limits[1], rig))
+
+
+def file_units(length: float, rig: Rig) -> str:
+    """Return a length in longest sides of the mesh, as a legend writes it."""
+    return f"{length * longest_side(rig):.3g} in the file's units"
+
+
+def longest_side(rig: Rig) -> float:
+    """Return the longest side of the mesh's bounding box, in the file's units."""
+    return float(np.ptp(rig.mesh.bounds, axis=0).max())

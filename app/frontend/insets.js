@@ -33,8 +33,8 @@ export class Insets {
   make() {
     const box = this.overlay.canvas.getBoundingClientRect()
     if (!box.height) { return }
-    if (this.awaited && this.fitting.rests().length) {
-      this.frame(this.awaited)
+    if (this.framesAnother()) {
+      this.frame(this.framed)
       this.rested()
       return
     }
@@ -50,11 +50,20 @@ export class Insets {
     const fitted = this.fit(insets)
     // A few pixels change nothing.
     if (this.fitted && Math.abs(fitted / this.fitted - 1) > 0.03) {
+      const unmoved = String(this.orbit.position) === this.left
       this.orbit.scale(fitted / this.fitted)
+      if (unmoved) { this.left = String(this.orbit.position) }
       this.fits(fitted)
       this.rested()  // pictures are drawn from where this camera is
     }
     this.changed()
+  }
+
+  // Whether the character is another one than was framed: its camera may come before its body.
+  framesAnother() {
+    const rests = this.fitting.rests()
+    const unmoved = String(this.orbit.position) === this.left
+    return unmoved && rests.length && rests.some((rest, i) => rest !== this.framedRests[i])
   }
 
   // Whether anything that decides what is free has changed: to look at all points of the
@@ -188,7 +197,7 @@ export class Insets {
   // somewhere else. Reported cameras ignore cards.
   frame(camera) {
     const {position, focal_point: target, now} = camera
-    this.awaited = this.fitting.rests().length ? null : camera  // what is to be fitted comes later
+    Object.assign(this, {framed: camera, framedRests: this.fitting.rests(), left: null})
     this.orbit.setHome(position, target)
     this.fitted = null
     this.make()
@@ -200,6 +209,7 @@ export class Insets {
       this.orbit.distance *= this.factor
     }
     this.orbit.moving = false
+    this.left = String(this.orbit.position)
   }
 
   // Where the eye would be without cards.

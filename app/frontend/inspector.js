@@ -228,13 +228,13 @@ function card(model, facts) {
   }
 
   const distances = element("h3", "", "The nearest bones")
-  distances.append(element("small", "", "distance; longest side = 1"))
+  distances.append(element("small", "", "distance, in the file's units"))
   root.append(distances)
   const most = Math.max(...facts.distances.map(({distance}) => distance), 1e-12)
   for (const bone of facts.distances) {
     const {name, distance, color} = bone
-    const spoken = `${name}: distance ${distance.toFixed(3)}`
-    root.append(row(model, bone, [bar(color, distance / most)], distance.toFixed(3), spoken))
+    const spoken = `${name}: distance ${LENGTH(distance)}`
+    root.append(row(model, bone, [bar(color, distance / most)], LENGTH(distance), spoken))
   }
 
   if (asks) { root.append(...explanation(model, facts)) }

@@ -55,10 +55,10 @@ export function hitPoint(renderer, actor, x, y, reach = 7) {
 }
 
 export function valueAt(actor, index) {
-  const {text, values, names, percent} = actor.reading
+  const {text, values, names, percent, unit} = actor.reading
   const value = (values || actor.values)?.[index]
   if (value === undefined || Number.isNaN(value)) { return null }
   if (names?.length) { return text + names[value] }
   if (percent) { return `${text}${Math.round(100 * value)}\u00a0%` }
-  return text + (Number.isInteger(value) ? value : value.toFixed(3))
+  return text + (Number.isInteger(value) ? value * unit : Number((value * unit).toPrecision(3)))
 }

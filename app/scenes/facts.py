@@ -37,6 +37,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         whether the file has weights; "explain", whether it is asked why, and "why", the
         answer for each joint, once it is there (see `explanation_facts`); "overruled", whether
         a person gave it its weights, and "offered", joints that it may be given weight of.
+        Lengths are in the file's units.
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
@@ -59,7 +60,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     computed = binding.weights[vertex]
     either = computed if artist is None else np.maximum(computed, artist)
     listed = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
-    distance = binding.distances.at(slice(None), vertex)
+    distance = binding.distances.at(slice(None), vertex) * binding.graph.lattice.size
     near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
     which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
     component = int(which[vertex])

@@ -8,7 +8,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph, RaySlice, slice
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
-from cutcell_viewers.distance_scene import distance_legend, distance_limits
+from cutcell_viewers.distance_scene import distance_legend, distance_limits, file_units
 from cutcell_viewers.graph_scene import (
     component_colors,
     depth_field,
@@ -142,7 +142,7 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
     if state.edge_colors == "depth":
         depth = memo("depth", (shown,), lambda: depth_field(shown))
         most = distance_limits(depth)[1]
-        legend = Legend("Depth below the surface", "depth", "0", f"{most:.3f} of the longest side")
+        legend = Legend("Depth below the surface", "depth", "0", file_units(most, state.rig))
         return depth, {"shades": "depth"}, legend
     if state.edge_colors == "component":
         colors, count = memo("parts", (shown,), lambda: component_colors(shown))

@@ -176,7 +176,7 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
     component, sizes = components(binding.graph)
     skeleton, colors = rig.skeleton, colors_of(rig)
     near = np.argsort(distances, axis=0, kind="stable")[:MAX_DISTANCES].T
-    near_distances = np.take_along_axis(distances, near.T, axis=0).T
+    near_distances = binding.graph.lattice.size * np.take_along_axis(distances, near.T, axis=0).T
     heavy = np.argsort(-binding.weights, axis=1, kind="stable")[:, :MAX_WEIGHTS]
     return {
         "joints": [

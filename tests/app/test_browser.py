@@ -12,6 +12,7 @@ from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene, to_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import BIND_MS, Visit, changed
+from tests.viewers.arm import arm_rig
 
 pytestmark = pytest.mark.slow
 
@@ -262,6 +263,18 @@ def test_a_character_that_was_opened_stays_within_reach(visit, tmp_path):
     visit.choose("Character", "mine.glb")
     visit.page.wait_for_function(stands, arg=points)
     visit.wait_until_bound()
+
+
+def test_another_character_is_seen_from_as_far_as_it_needs_in_the_graph(browser, url, tmp_path):
+    # The window is so large that no card is near the character.
+    window = {"width": 1440, "height": 900}
+    visit = Visit(browser, url + "/?rig=biped&panel=graph", viewport=window)
+    visit.wait_until_bound()
+    cutcell.save(tmp_path / "arm.glb", arm_rig())
+    visit.open(tmp_path / "arm.glb")
+    needed = visit.page.evaluate("__cutcell.insets.fit(__cutcell.renderer.insets)")
+    assert visit.page.evaluate("__cutcell.orbit.distance") == pytest.approx(needed, rel=0.04)
+    visit.close()
 
 
 def test_light_and_dark(visit):

@@ -85,8 +85,8 @@ def test_joints_views_and_vertices_are_shown_without_a_server(alone, path, bindi
     strongest = int(binding.weights[vertex].argmax())
     shown = alone.card.get_by_role("button", name=re.compile("weight"))
     expect(shown.first).to_contain_text(f"{binding.weights[vertex, strongest]:.2f}")
-    distance = binding.distances.at(strongest, vertex)
-    expect(alone.card).to_contain_text(f"{distance:.3f}")
+    distance = binding.distances.at(strongest, vertex) * binding.graph.lattice.size
+    expect(alone.card).to_contain_text(f"{distance:.3g}")
     alone.close_card()
 
 
