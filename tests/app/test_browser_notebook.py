@@ -24,7 +24,7 @@ HTML = "text/html"
 WIDGET = "application/vnd.jupyter.widget-view+json"
 SECONDS = 600
 MAX_HEIGHT = 400
-NOT_COMPILED = ("vertex_areas-", "_prune-")
+NOT_COMPILED = ("_find_edges-", "_prune-")
 """How the files of functions begin that a binding compiles in a moment."""
 
 SETUP = """from pathlib import Path
