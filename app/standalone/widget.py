@@ -59,5 +59,6 @@ class PageWidget(anywidget.AnyWidget):
 
     def _repr_mimebundle_(self, **options: Any) -> Any:
         """Add the page alone, for viewers of the notebook that have no widgets."""
-        data, metadata = super()._repr_mimebundle_(**options)
+        bundle: Any = super()._repr_mimebundle_(**options)
+        data, metadata = bundle
         return {**data, "text/html": self.page._repr_html_()}, metadata

@@ -3,9 +3,11 @@
 from dataclasses import replace
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 import cutcell
+from cutcell_viewers.pose_scene import pose_scene
 from tests.viewers.arm import arm_rig
 
 MAX_LETTERS = 200
@@ -16,11 +18,14 @@ MAX_ROWS = 10
 def objects():
     rig = arm_rig()
     binding = cutcell.bind(rig, 16)
-    objects = rig, rig.mesh, rig.skeleton, binding.graph, binding.distances, binding
+    scene = pose_scene(rig, binding.weights, np.tile(np.eye(4), (3, 1, 1)))
+    objects = rig, rig.mesh, rig.skeleton, binding.graph, binding.distances, binding, scene
     return {type(one).__name__: one for one in objects}
 
 
-NAMES = ["Rig", "TriangleMesh", "Skeleton", "CutCellGraph", "BoneDistances", "Binding"]
+NAMES = [
+    "Rig", "TriangleMesh", "Skeleton", "CutCellGraph", "BoneDistances", "Binding", "Description",
+]  # fmt: skip
 
 
 def rows(one):
