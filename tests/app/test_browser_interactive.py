@@ -10,12 +10,18 @@ from playwright.sync_api import expect
 import cutcell
 from cutcell_app.standalone.page import interactive_page
 from tests.app.browser import Visit, changed
+from tests.app.test_browser_rendered import from_afar
 
 MAX_BYTES = 10_000_000
 # The page's policy forbids what Playwright's own waiting does: to evaluate text.
 WAIT = """async () => {{
   while (!window.__cutcell?.messages || !({})) {{ await new Promise(requestAnimationFrame) }}
 }}"""
+CAMERA = "({position: __cutcell.insets.position, focal_point: __cutcell.orbit.target})"
+LOOK = "camera => __cutcell.receive({id: 1e6, camera})"
+SCENE_ALONE = """for (const shown of __cutcell.overlay.root.children) {
+  if (shown !== __cutcell.overlay.canvas) { shown.style.opacity = 0 }
+}"""
 FRAMED = '<!doctype html><iframe width="320" height="240" srcdoc="{}"></iframe>'
 
 
@@ -29,6 +35,14 @@ class Alone(Visit):
     def select(self, label, value):
         """Take an option of a list by its value."""
         self.page.get_by_role("combobox", name=label).select_option(str(value))
+
+    def resize(self, width, height):
+        """Give the canvas a size, in pixels."""
+        self.page.set_viewport_size({"width": width, "height": 2 * height})
+        canvas = self.page.get_by_role("application").bounding_box()
+        controls = 2 * height - round(canvas["height"])
+        self.page.set_viewport_size({"width": width, "height": height + controls})
+        self.settle()
 
     def check(self):
         """Check that nothing was requested but the file itself."""
@@ -74,6 +88,25 @@ def test_joints_views_and_vertices_are_shown_without_a_server(alone, path, bindi
     distance = binding.distances.at(strongest, vertex)
     expect(alone.card).to_contain_text(f"{distance:.3f}")
     alone.close_card()
+
+
+def test_the_picture_is_the_one_of_the_served_page(visit, alone, robot):
+    alone.button("Weights").click()
+    alone.select("Joint", len(robot.skeleton.joints))
+    for panel in ("Weights", "Distance"):
+        visit.panel(panel)
+        served = scene(visit)
+        canvas = visit.page.get_by_role("application").bounding_box()
+        alone.resize(round(canvas["width"]), round(canvas["height"]))
+        alone.button(panel).click()
+        if panel == "Distance":
+            alone.select("Joint", robot.skeleton.names.index(visit.bone.inner_text()))
+        alone.page.evaluate(LOOK, visit.page.evaluate(CAMERA))
+        difference = np.abs(scene(alone) - served).max(axis=2)
+        assert np.abs(served - served[-1, 0]).max() > 100, "something is seen"
+        assert (difference > 24).mean() < 3e-3, "the toolbar, no more"
+    visit.page.reload()
+    visit.wait_until_bound()
 
 
 def test_a_clip_plays_and_a_ring_turns_the_joint(alone):
@@ -125,3 +158,10 @@ def test_it_fits_a_small_frame_and_follows_the_dark_theme(browser, path, tmp_pat
     color = "getComputedStyle(document.body).backgroundColor"
     assert inside.evaluate(color) == "rgb(27, 32, 40)"
     alone.close()
+
+
+def scene(visit):
+    """Return the picture from afar, without what is written over it."""
+    visit.settle()
+    visit.page.evaluate(SCENE_ALONE)
+    return from_afar(visit.look())
