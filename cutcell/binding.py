@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from .rig.checks import check_positions
 from .rig.inputs import RigLike, as_rig
 from .runtime.memory import check_matrix
 from .runtime.progress import Progress, silent
-from .runtime.repr import short_repr
+from .runtime.repr import Summarized
 from .runtime.threads import cancellable, submit
 from .weights.rig_falloff.surface_operators import SurfaceOperators
 from .weights.skinning_weights import skinning_weights
@@ -42,8 +42,8 @@ COPIES = 4
 """Matrices of vertices and joints that there are at a time, distances and weights, at most."""
 
 
-@dataclass(frozen=True, eq=False)
-class Binding:
+@dataclass(frozen=True, eq=False, repr=False)
+class Binding(Summarized):
     """A bound rig: weights, and everything they came from.
 
     Parameters
@@ -57,6 +57,8 @@ class Binding:
         Time taken by each stage: "graph", "distances", "weights".
     warnings : tuple of str
         What a person should know about the result, in sentences.
+    method : Method
+        What computed it.
     """
 
     weights: NDArray[np.float64]
@@ -64,8 +66,22 @@ class Binding:
     distances: BoneDistances
     seconds: dict[str, float]
     warnings: tuple[str, ...]
+    method: Method
 
-    __repr__ = short_repr
+    @property
+    def _summary(self) -> dict[str, Any]:
+        vertices, joints = self.weights.shape
+        return {
+            "method": self.method.name,
+            "resolution": self.method.resolution,
+            "vertices": vertices,
+            "joints": joints,
+            "nodes": len(self.graph.nodes),
+            "edges": len(self.graph.edges),
+            "unreached_vertices": int(np.count_nonzero(self.distances.fallback)),
+            "seconds": round(sum(self.seconds.values()), 2),
+            "warnings": len(self.warnings),
+        }
 
 
 def bind(
@@ -195,7 +211,7 @@ def _bind(
         weights = apply_overrides(rig, graph, weights, corrections, refinement["locked"])
         progress("weights", 1.0)
     warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
-    return Binding(weights, graph, distances, seconds, warnings)
+    return Binding(weights, graph, distances, seconds, warnings, method)
 
 
 def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:

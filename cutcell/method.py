@@ -207,6 +207,14 @@ class Method:
         return replace(self, **options)
 
     @property
+    def name(self) -> str:
+        """The method's name, whatever its resolution: "animation", "paper", or else "custom"."""
+        others = {
+            replace(other, resolution=self.resolution): name for name, other in METHODS.items()
+        }
+        return others.get(self, "custom")
+
+    @property
     def joints_needed(self) -> int | None:
         """From how many nearest joints of each vertex distances are needed; None: from all."""
         return joints_needed(self.falloff, self.max_influences)

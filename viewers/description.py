@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import FaceColors
-from cutcell.runtime.repr import short_repr
+from cutcell.runtime.repr import Summarized
 
 from .palette import BODY, Color
 from .skin import Skin
@@ -189,8 +189,8 @@ class Legend:
     swatches: tuple[tuple[Color, str], ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class Description:
+@dataclass(frozen=True, eq=False, repr=False)
+class Description(Summarized):
     """A whole scene.
 
     Parameters
@@ -217,7 +217,15 @@ class Description:
     front: float | None = None
     images: NDArray[np.uint8] | None = None
 
-    __repr__ = short_repr
+    @property
+    def _summary(self) -> dict[str, Any]:
+        return {
+            "actors": tuple(self.actors),
+            "views": self.views,
+            "legend": self.legend.title if self.legend else None,
+            "is_posed": self.pose is not None,
+            "is_cut": self.cut is not None,
+        }
 
     @property
     def bounds(self) -> NDArray[np.float64]:

@@ -54,6 +54,11 @@ function standIn(acts, rest = {}) {
   }
 }
 
+// Says something to the page that this one is a frame of; see notebook.js.
+function post(message) {
+  if (window.parent !== window) { window.parent.postMessage({cutcell: message}, "*") }
+}
+
 class Page {
   constructor(scenes, read, vtk) {
     Object.assign(this, {scenes, read, sent: {}, id: 0, vertex: null, clip: -1, normal: [0, 0, 1], part: 0.5})
@@ -98,6 +103,10 @@ class Page {
     this.send(this.read(this.scenes.first))
     this.show(this.shown)
     new ResizeObserver(() => this.fit()).observe(this.view.overlay.root)
+    window.addEventListener("message", ({source, data}) => {
+      if (source === window.parent && data?.cutcell) { this.select(data.cutcell) }
+    })
+    post("ready")
   }
 
   // Where there is little space, nothing is drawn over the character.
@@ -123,14 +132,21 @@ class Page {
   }
 
   choose(joint) {
-    this.joint = joint
-    this.present()
+    this.select({joint})
+    post({joint: joint < this.scenes.joints.length ? joint : null})
   }
 
   pick(vertex) {
-    this.vertex = vertex
+    this.select({vertex})
+    post({vertex})
+  }
+
+  // Shows another joint, null for all of them, or another vertex, or both.
+  select({joint, vertex}) {
+    if (joint !== undefined) { this.joint = joint ?? this.scenes.joints.length }
+    if (vertex !== undefined) { this.vertex = vertex }
     this.present()
-    this.card.set("facts", vertex === null ? null : this.facts(vertex))
+    if (vertex !== undefined) { this.card.set("facts", vertex === null ? null : this.facts(vertex)) }
   }
 
   // Plays a clip; -1 goes back to rest.

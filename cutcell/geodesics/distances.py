@@ -15,15 +15,15 @@ from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
-from ..runtime.repr import short_repr
+from ..runtime.repr import Summarized
 from .bones import Bones, Sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .solver import BoneDistanceSolver
 from .tracing.inside import Inside
 
 
-@dataclass(frozen=True, eq=False)
-class BoneDistances:
+@dataclass(frozen=True, eq=False, repr=False)
+class BoneDistances(Summarized):
     """Distances from bones and joints to the vertices of a mesh, in the unit cube.
 
     Parameters
@@ -57,7 +57,16 @@ class BoneDistances:
     solver: BoneDistanceSolver
     skeleton: Skeleton | None = None
 
-    __repr__ = short_repr
+    @property
+    def _summary(self) -> dict[str, Any]:
+        return {
+            "joints": len(self.at_welded),
+            "vertices": len(self.fallback),
+            "unreached_vertices": int(np.count_nonzero(self.fallback)),
+            "bones": len(self.bones.joint),
+            "sources": len(self.source_node),
+            "nearest_joints": self.nearest_joints or "all",
+        }
 
     @property
     def graph(self) -> CutCellGraph:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..runtime.repr import short_repr
+from ..runtime.repr import Summarized
 from .interior import InteriorPoints
 from .lattice import Lattice
 from .neighbours import Adjacency, list_neighbours
@@ -20,8 +21,8 @@ MESH, INTERIOR, SURFACE = 0, 1, 2
 the mesh, along rays inside, from a ray hit to the corners of its triangle)."""
 
 
-@dataclass(frozen=True, eq=False)
-class CutCellGraph:
+@dataclass(frozen=True, eq=False, repr=False)
+class CutCellGraph(Summarized):
     """Mesh edges, kept ray segments and their ends on the surface as one graph.
 
     Positions and lengths are in the unit cube; `lattice` maps them back to the file's units.
@@ -73,7 +74,18 @@ class CutCellGraph:
     inverted: NDArray[np.bool_]
     winding_threshold: float = 0.5
 
-    __repr__ = short_repr
+    @property
+    def _summary(self) -> dict[str, Any]:
+        return {
+            "nodes": len(self.nodes),
+            "interior_nodes": len(self.interior),
+            "surface_nodes": len(self.nodes) - self.first_surface,
+            "edges": len(self.edges),
+            "resolution": self.lattice.resolution,
+            "connectivity": self.connectivity,
+            "winding_threshold": self.winding_threshold,
+            "is_closed": self.is_closed,
+        }
 
     @property
     def first_point(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import webbrowser
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -68,6 +69,8 @@ def show(rig: RigLike, binding: Any = None, *, height: int = 520) -> Page:
     -------
     Page
         It can be saved. Outside of IPython it is also opened in the browser, from a temporary file.
+        In a notebook, with ``cutcell[notebook]``, it is a widget: its `joint` and `vertex` are what
+        is chosen on the page, None for all joints and for no vertex. Set, they are chosen there.
 
     Raises
     ------
@@ -77,22 +80,26 @@ def show(rig: RigLike, binding: Any = None, *, height: int = 520) -> Page:
         As of `bind`.
     """
     height = int(check_number("height", height, 100, 10000))
-    page = Page(_page_maker()(as_rig(rig), binding), height)
-    if not is_notebook():
-        with NamedTemporaryFile(suffix=".html", delete=False) as file:
-            file.write(page.content.encode())
-        webbrowser.open(Path(file.name).as_uri())
+    rig = as_rig(rig)
+    make = _loaded("interactive")
+    if make is None:
+        raise MissingLibraryError(
+            "interactive pages need libraries that are not installed; "
+            "install them by: pip install 'cutcell[app]'"
+        )
+    page = Page(make(rig, binding), height)
+    if is_notebook():
+        widget = _loaded("widget")
+        return page if widget is None else widget(rig, page)
+    with NamedTemporaryFile(suffix=".html", delete=False) as file:
+        file.write(page.content.encode())
+    webbrowser.open(Path(file.name).as_uri())
     return page
 
 
-def _page_maker() -> Any:
-    """Return the function that makes the page, of the package above."""
-    for above in entry_points(group="cutcell.pages"):
-        try:
+def _loaded(name: str) -> Any:
+    """Return what the package above has by this name; None where its libraries are missing."""
+    for above in entry_points(group="cutcell.pages", name=name):
+        with suppress(ModuleNotFoundError):
             return above.load()
-        except ModuleNotFoundError:
-            break
-    raise MissingLibraryError(
-        "interactive pages need libraries that are not installed; "
-        "install them by: pip install 'cutcell[app]'"
-    )
+    return None

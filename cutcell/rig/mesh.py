@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
-from ..runtime.repr import short_repr
+from ..runtime.repr import Summarized
 from .arrays import as_array, check_finite, frozen
 
 
-@dataclass(frozen=True, eq=False)
-class TriangleMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class TriangleMesh(Summarized):
     """Triangles in space; closed or open, clean or a soup.
 
     Parameters
@@ -39,8 +39,6 @@ class TriangleMesh:
 
         def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None: ...
 
-    __repr__ = short_repr
-
     def __post_init__(self) -> None:
         vertices = as_array(self.vertices, np.float64, (None, 3), "vertices", MeshError)
         faces = as_array(self.faces, np.int64, (None, 3), "faces", MeshError)
@@ -58,6 +56,11 @@ class TriangleMesh:
             raise MeshError("all faces of the mesh lie in one point; it has no extent")
         object.__setattr__(self, "vertices", frozen(vertices))
         object.__setattr__(self, "faces", frozen(faces.astype(np.int32)))
+
+    @property
+    def _summary(self) -> dict[str, Any]:
+        size = " x ".join(f"{side:.3g}" for side in np.ptp(self.bounds, axis=0))
+        return {"vertices": len(self.vertices), "triangles": len(self.faces), "size": size}
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
-from ..runtime.repr import short_repr
+from ..runtime.repr import Summarized
 from .arrays import as_array, frozen
 from .clip import Clip
 from .mesh import TriangleMesh
@@ -60,8 +60,8 @@ class LeftOut:
     why: str
 
 
-@dataclass(frozen=True, eq=False)
-class Rig:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rig(Summarized):
     """A character: mesh, skeleton, and what its file says about weights and motion.
 
     Parameters
@@ -138,8 +138,6 @@ class Rig:
             source: Any = None,
         ) -> None: ...
 
-    __repr__ = short_repr
-
     def __post_init__(self) -> None:
         shape = (len(self.mesh.vertices), len(self.skeleton.joints))
         if self.weights is not None:
@@ -161,6 +159,20 @@ class Rig:
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
         self._check_units()
+
+    @property
+    def _summary(self) -> dict[str, Any]:
+        return {
+            "name": self.name,
+            "vertices": len(self.mesh.vertices),
+            "triangles": len(self.mesh.faces),
+            "joints": len(self.skeleton.joints),
+            "clips": len(self.clips),
+            "parts": len(self.parts),
+            "attachments": len(self.attachments),
+            "weights": self.weights is not None,
+            "warnings": len(self.warnings),
+        }
 
     def with_weights(self, weights: NDArray[np.float64] | None) -> Rig:
         """Return the same rig with other weights, shape (n, j), or with none."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError
-from ..runtime.repr import short_repr
+from ..runtime.repr import Summarized
 from .arrays import as_array, check_finite, frozen
 from .checks import shown
 
@@ -20,8 +20,8 @@ LONG_CYCLE = 10
 """Joints of a cycle that are named; of a longer one only the first and the last."""
 
 
-@dataclass(frozen=True, eq=False)
-class Skeleton:
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton(Summarized):
     """Joints and their parents, in the space and units of the mesh.
 
     A mesh without a skeleton has one of no joints, `Skeleton([], [])`.
@@ -64,8 +64,6 @@ class Skeleton:
             orientations: ArrayLike | None = None,
         ) -> None: ...
 
-    __repr__ = short_repr
-
     def __post_init__(self) -> None:
         joints = as_array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
         count = len(joints)
@@ -94,6 +92,11 @@ class Skeleton:
         object.__setattr__(self, "parents", frozen(parents.astype(np.int32)))
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "deform", frozen(deform))
+
+    @property
+    def _summary(self) -> dict[str, Any]:
+        roots, deforming = int((self.parents < 0).sum()), int(self.deform.sum())
+        return {"joints": len(self.joints), "roots": roots, "deforming": deforming}
 
     def require_joints(self) -> None:
         """Refuse the skeleton of a mesh that came without one, and say how to give it one.

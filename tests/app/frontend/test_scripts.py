@@ -45,7 +45,7 @@ def test_every_module_and_style_is_used():
         "tour_card", "welcome",
     }  # fmt: skip
     assert '/component_state.js"></script>' in head()  # it runs before any other
-    for name in modules.keys() - rendered - {"component_state", "standalone"}:
+    for name in modules.keys() - rendered - {"component_state", "notebook", "standalone"}:
         assert any(f'"./{name}.js"' in text for text in modules.values()), name
     python = "".join(path.read_text() for path in (ROOT / "app").rglob("*.py"))
     for path in FOLDER.glob("*.css"):
