@@ -88,13 +88,13 @@ def find_errors(session: Session) -> None:
     state.measuring_errors = True
 
     def done(points: Any) -> None:
-        state.param.update(errors=(distances, joint, points), measuring_errors=False)
+        state.param.update(error_curves=(distances, joint, points), measuring_errors=False)
 
     def failed(error: Exception) -> None:
         state.measuring_errors = False
         session.fail(error)
 
-    session.tasks.jobs("errors").start(
+    session.tasks.jobs("error curves").start(
         lambda progress: error_points(rig, distances, joint, method, progress),
         done,
         failed,

@@ -103,7 +103,7 @@ def _errors(session: Session) -> list[Any]:
             state.param.joint,
         ),
     )
-    plots = pn.bind(curves, state.param.errors, state.param.binding, state.param.joint)
+    plots = pn.bind(curves, state.param.error_curves, state.param.binding, state.param.joint)
     return [
         caption(f"Mean error against any angle at R = {CONVERGED}, and seconds."),
         measure,

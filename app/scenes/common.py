@@ -54,11 +54,11 @@ def character(
     if PANELS[state.panel].poses and state.weights is not None:
         skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
     hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
-    mark = {}
-    if state.vertex is not None and state.vertex < len(rig.mesh.vertices):
+    mark, vertex = {}, state.vertex
+    if vertex is not None and vertex < len(rig.mesh.vertices):
         weights = state.weights if skin is not None else None
-        of = (rig, weights, state.vertex)
-        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, weights))
+        of = (rig, weights, vertex)
+        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, vertex, weights))
     visibility = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
         "body": replace(plain, skin=skin, edges=state.wireframe, **look),

@@ -105,6 +105,7 @@ def seen_apart(state: State, memo: Memo, actors: dict[str, Actor]) -> dict[str, 
 
 
 def _faces(state: State, memo: Memo, body: Actor) -> NDArray:
+    assert state.part is not None
     in_part = np.zeros(len(body.points), np.bool_)
     in_part[vertices_of(state, memo, state.part)] = True
     assert body.cells is not None

@@ -1,5 +1,7 @@
 """Choices of the brush that paints weights."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -32,14 +34,16 @@ class Selection:
 class BrushChoices(param.Parameterized):
     """Whether there is a brush, and what it does."""
 
-    brush: Any = param.Boolean(False, label="Paint")
-    brush_mode: Any = param.Selector(default="add", objects=[*get_args(BrushMode), "select"])
-    brush_radius: Any = param.Number(
+    brush = param.Boolean(False, label="Paint")
+    brush_mode: param.Selector[str] = param.Selector(
+        default="add", objects=[*get_args(BrushMode), "select"]
+    )
+    brush_radius = param.Number(
         0.06, bounds=(MIN_RADIUS, MAX_RADIUS), doc="Part of the character's longest side."
     )
-    brush_strength: Any = param.Number(0.5, bounds=(MIN_STRENGTH, 1))
-    brush_value: Any = param.Number(1.0, bounds=(0, 1), doc="What weights are replaced by.")
-    brush_mirrored: Any = param.Boolean(True, label="Mirror")
+    brush_strength = param.Number(0.5, bounds=(MIN_STRENGTH, 1))
+    brush_value = param.Number(1.0, bounds=(0, 1), doc="What weights are replaced by.")
+    brush_mirrored = param.Boolean(True, label="Mirror")
     brush_selection: Any = param.Parameter(
         None, doc="The `Selection` that strokes are limited to, of whatever mesh; or None."
     )

@@ -37,7 +37,7 @@ class DiagnosisChoices(param.Parameterized):
     export_diagnosis: Any = param.Parameter(
         None, doc="The cutcell.Diagnosis of the weights that an export contains, or None so far."
     )
-    finding: Any = param.String(
+    finding = param.String(
         "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
     )
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")

@@ -1,5 +1,7 @@
 """State that all panels share: the character, the chosen bone and vertex, and progress."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import param
@@ -13,44 +15,44 @@ CUTS = ("auto", "off", "x", "y", "z", "free")
 class Common(param.Parameterized):
     """The part of the state that belongs to no panel."""
 
-    panel: Any = param.Selector(default="weights", objects=list(PANELS))
+    panel: param.Selector[str] = param.Selector(default="weights", objects=list(PANELS))
 
-    demo: Any = param.String("", doc="Id of the demo character that was chosen; else empty.")
+    demo = param.String("", doc="Id of the demo character that was chosen; else empty.")
     rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")
     binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
     bare_graph: Any = param.Parameter(None, doc="The graph of a mesh without a skeleton.")
 
-    joint: Any = param.Integer(0, doc="The chosen joint.")
-    vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
-    skeleton: Any = param.Boolean(True, label="Skeleton")
-    faint_skeleton: Any = param.Boolean(False, doc="Whether bones are see-through.")
-    wireframe: Any = param.Boolean(False, doc="Whether edges of the mesh are drawn on the body.")
+    joint = param.Integer(0, doc="The chosen joint.")
+    vertex = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
+    skeleton = param.Boolean(True, label="Skeleton")
+    faint_skeleton = param.Boolean(False, doc="Whether bones are see-through.")
+    wireframe = param.Boolean(False, doc="Whether edges of the mesh are drawn on the body.")
 
-    cut_axis: Any = param.Selector(default="auto", objects=list(CUTS))
-    cut_position: Any = param.Number(0.5, bounds=(0, 1))
-    cut_yaw: Any = param.Number(
+    cut_axis: param.Selector[str] = param.Selector(default="auto", objects=list(CUTS))
+    cut_position = param.Number(0.5, bounds=(0, 1))
+    cut_yaw = param.Number(
         30.0, bounds=(-180, 180), doc="Where a free plane looks to, around the upright axis."
     )
-    cut_pitch: Any = param.Number(20.0, bounds=(-90, 90), doc="And how far up, in degrees.")
-    cut_face: Any = param.Selector(
+    cut_pitch = param.Number(20.0, bounds=(-90, 90), doc="And how far up, in degrees.")
+    cut_face: param.Selector[str] = param.Selector(
         default="field", objects=["field", "winding"], doc="What is seen on it, of distances."
     )
-    graph_face: Any = param.Selector(
+    graph_face: param.Selector[str] = param.Selector(
         default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
     )
 
-    actors: Any = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
-    rendered: Any = param.Boolean(
+    actors = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
+    rendered = param.Boolean(
         False, doc="Whether PyVista draws the view on the server when it rests."
     )
 
-    tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
+    tour = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
 
-    dark: Any = param.Boolean(False)
+    dark = param.Boolean(False)
 
-    busy: Any = param.Boolean(False, doc="Whether something is being computed.")
-    stage: Any = param.String("", doc="What is being computed.")
-    fraction: Any = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
+    busy = param.Boolean(False, doc="Whether something is being computed.")
+    stage = param.String("", doc="What is being computed.")
+    fraction = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
     message: Any = param.Parameter(None, doc="(severity, sentence) to show, or None.")
 
     @property

@@ -1,5 +1,7 @@
 """Choices of the panel Compare."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import param
@@ -27,9 +29,11 @@ def standard(rig: Any) -> list[str]:
 class CompareChoices(param.Parameterized):
     """Which methods stand side by side, and what of them is seen."""
 
-    methods: Any = param.List([NOW, "euclidean"], doc="Names of the methods, two to four.")
-    compared: Any = param.Dict({}, doc="A Compared for each method that was tried on this rig.")
-    comparing: Any = param.String("", doc="The method that is being computed; empty for none.")
-    queued: Any = param.Boolean(False, doc="Whether it waits for what other sessions compare.")
-    compare_field: Any = param.Selector(default="bone", objects=["bone", "all", "error"])
-    minus: Any = param.String("", doc="The method that is taken away from all; empty for none.")
+    methods = param.List([NOW, "euclidean"], doc="Names of the methods, two to four.")
+    compared = param.Dict({}, doc="A Compared for each method that was tried on this rig.")
+    comparing = param.String("", doc="The method that is being computed; empty for none.")
+    queued = param.Boolean(False, doc="Whether it waits for what other sessions compare.")
+    compare_field: param.Selector[str] = param.Selector(
+        default="bone", objects=["bone", "all", "error"]
+    )
+    minus = param.String("", doc="The method that is taken away from all; empty for none.")

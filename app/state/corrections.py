@@ -28,12 +28,12 @@ class CorrectionsChoices(param.Parameterized):
 
     corrections: Any = param.Parameter(Corrections(), doc="A cutcell.Corrections.")
     own: Any = param.Parameter(None, doc="The character where nothing is corrected: a cutcell.Rig.")
-    joint_handle: Any = param.Boolean(False, label="Show move handle")
-    mirrored: Any = param.Boolean(True, label="Mirror")
+    joint_handle = param.Boolean(False, label="Show move handle")
+    mirrored = param.Boolean(True, label="Mirror")
     dragged: Any = param.Parameter(
         None, doc="A `Dragged` while joints are on their way, which the corrections do not tell."
     )
-    part: Any = param.Integer(
+    part = param.Integer(
         None, allow_None=True, doc="A vertex of the connected component that is looked at."
     )
 

@@ -1,5 +1,7 @@
 """Choices of the panel Distance."""
 
+from __future__ import annotations
+
 from typing import Any, Literal
 
 import param
@@ -31,28 +33,28 @@ class GeodesicsChoices(param.Parameterized):
     """Which distances are seen."""
 
     field: Any = param.Parameter(None, doc="(distances, joint, distance at every graph node).")
-    starts: Any = param.Boolean(False, label="Sources")
-    path: Any = param.Boolean(True, label="Shortest path from the clicked vertex")
-    front: Any = param.Number(0.35, bounds=(0, 1), doc="How far the wave came, of all the way.")
-    wave: Any = param.Boolean(
-        False, label="Wavefront", doc="Whether `front` hides what is farther."
-    )
-    animating: Any = param.Boolean(False, doc="Whether the wave runs.")
-    beside_straight: Any = param.Boolean(False, label=MEASURES["straight"])
-    beside_surface: Any = param.Boolean(False, label=MEASURES["surface"])
-    beside_voxel: Any = param.Boolean(False, label=MEASURES["voxel"])
-    beside_6: Any = param.Boolean(False, label=MEASURES["6"])
-    beside_26: Any = param.Boolean(False, label=MEASURES["26"])
-    beside_any: Any = param.Boolean(False, label=MEASURES["any"])
-    beside_converged: Any = param.Boolean(False, label=f"Converged: any angle, R = {CONVERGED}")
-    beside_resolution: Any = param.Selector(
+    starts = param.Boolean(False, label="Sources")
+    path = param.Boolean(True, label="Shortest path from the clicked vertex")
+    front = param.Number(0.35, bounds=(0, 1), doc="How far the wave came, of all the way.")
+    wave = param.Boolean(False, label="Wavefront", doc="Whether `front` hides what is farther.")
+    animating = param.Boolean(False, doc="Whether the wave runs.")
+    beside_straight = param.Boolean(False, label=MEASURES["straight"])
+    beside_surface = param.Boolean(False, label=MEASURES["surface"])
+    beside_voxel = param.Boolean(False, label=MEASURES["voxel"])
+    beside_6 = param.Boolean(False, label=MEASURES["6"])
+    beside_26 = param.Boolean(False, label=MEASURES["26"])
+    beside_any = param.Boolean(False, label=MEASURES["any"])
+    beside_converged = param.Boolean(False, label=f"Converged: any angle, R = {CONVERGED}")
+    beside_resolution: param.Selector[int] = param.Selector(
         default=64, objects=list(RESOLUTIONS), doc="R of voxels and graphs that stand side by side."
     )
-    measured: Any = param.Dict({}, doc="By measure: (distances, joint, R, MeasuredDistance).")
-    measuring: Any = param.String("", doc="The measure that is being computed; empty for none.")
+    measured = param.Dict({}, doc="By measure: (distances, joint, R, MeasuredDistance).")
+    measuring = param.String("", doc="The measure that is being computed; empty for none.")
 
-    errors: Any = param.Parameter(None, doc="(distances, joint, `ErrorPoint`s), once measured.")
-    measuring_errors: Any = param.Boolean(False, doc="Whether errors are being measured.")
+    error_curves: Any = param.Parameter(
+        None, doc="(distances, joint, `ErrorPoint`s), once measured."
+    )
+    measuring_errors = param.Boolean(False, doc="Whether errors are being measured.")
 
     @property
     def measures(self) -> list[Measure]:

@@ -1,5 +1,7 @@
 """Choices of the panel Graph."""
 
+from __future__ import annotations
+
 from importlib.util import find_spec
 from typing import Any
 
@@ -28,54 +30,54 @@ LAYERS = {
 class GraphChoices(param.Parameterized):
     """How the graph is built, and what of it is seen."""
 
-    graph_resolution: Any = param.Integer(
+    graph_resolution = param.Integer(
         READABLE, bounds=(0, 512), doc="Of the graph that is shown; 0 for the one of the weights."
     )
     easy_graph: Any = param.Parameter(None, doc="(what it was built from, graph) to show.")
-    resolution: Any = param.Integer(
-        default("resolution"), doc="Lattice cells along the longest side."
+    resolution = param.Integer(default("resolution"), doc="Lattice cells along the longest side.")
+    connectivity: param.Selector[int | str] = param.Selector(
+        default=default("connectivity"), objects=[6, 26, "any"]
     )
-    connectivity: Any = param.Selector(default=default("connectivity"), objects=[6, 26, "any"])
-    winding_threshold: Any = param.Number(default("winding_threshold"), bounds=(0, 1))
-    orient: Any = param.Boolean(default("orient"), label="Flip inverted faces")
-    leaf: Any = param.Selector(default=default("leaf"), objects=list(LEAVES))
+    winding_threshold = param.Number(default("winding_threshold"), bounds=(0, 1))
+    orient = param.Boolean(default("orient"), label="Flip inverted faces")
+    leaf: param.Selector[str] = param.Selector(default=default("leaf"), objects=list(LEAVES))
 
-    body: Any = param.Boolean(True, label="Surface")
-    mesh_edges: Any = param.Boolean(True, label="Mesh edges")
-    interior_edges: Any = param.Boolean(True, label="Interior edges")
-    surface_edges: Any = param.Boolean(True, label="Surface edges")
-    nodes: Any = param.Boolean(True, label="Nodes")
-    edge_colors: Any = param.Selector(
+    body = param.Boolean(True, label="Surface")
+    mesh_edges = param.Boolean(True, label="Mesh edges")
+    interior_edges = param.Boolean(True, label="Interior edges")
+    surface_edges = param.Boolean(True, label="Surface edges")
+    nodes = param.Boolean(True, label="Nodes")
+    edge_colors: param.Selector[str] = param.Selector(
         default="kind", objects=["kind", "depth", "distance", "component"]
     )
-    node: Any = param.Integer(None, allow_None=True, doc="The node that is looked at, or None.")
+    node = param.Integer(None, allow_None=True, doc="The node that is looked at, or None.")
 
-    cut_keeps: Any = param.Selector(
+    cut_keeps: param.Selector[str] = param.Selector(
         default="face",
         objects=["half", "face", "slab"],
         doc="Behind a cut: all, of the interior the first cells only, or what lies between two "
         "planes.",
     )
-    slab: Any = param.Number(
-        0.1, bounds=(0.01, 0.6), doc="Between the planes, of the longest side."
-    )
+    slab = param.Number(0.1, bounds=(0.01, 0.6), doc="Between the planes, of the longest side.")
 
-    slicing: Any = param.Boolean(False, label="One slice and its rays")
-    slice_axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="Its normal.")
-    slice_rays: Any = param.Selector(
+    slicing = param.Boolean(False, label="One slice and its rays")
+    slice_axis: param.Selector[str] = param.Selector(
+        default="z", objects=["x", "y", "z"], doc="Its normal."
+    )
+    slice_rays: param.Selector[str] = param.Selector(
         default="x", objects=["x", "y", "z"], doc="Which way they run."
     )
-    slice_caster: Any = param.Selector(
+    slice_caster: param.Selector[str] = param.Selector(
         default="raster",
         objects=["raster", *(name for name in INSTALLED if name != "fast")],
         doc="What casts the rays.",
     )
-    slice_winding: Any = param.Selector(
+    slice_winding: param.Selector[str] = param.Selector(
         default="exact",
         objects=["exact", *(name for name in INSTALLED if name == "fast")],
         doc="What computes winding numbers.",
     )
-    slice_position: Any = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")
+    slice_position = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")
 
     @property
     def graph_inputs(self) -> tuple[Any, ...] | None:

@@ -1,5 +1,7 @@
 """Choices of the panel Pairs: the pair of an audit."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -45,8 +47,10 @@ class PairsChoices(param.Parameterized):
     """The audit, and which of its pairs is looked at."""
 
     opened: Any = param.Parameter(None, doc="An `OpenedAudit`, or None.")
-    pair: Any = param.Integer(0, bounds=(0, None), doc="Its place among all pairs.")
-    tier: Any = param.Selector(default="all", objects=list(TIERS), doc="Which are stepped through.")
+    pair = param.Integer(0, bounds=(0, None), doc="Its place among all pairs.")
+    tier: param.Selector[str] = param.Selector(
+        default="all", objects=list(TIERS), doc="Which are stepped through."
+    )
     beside: Any = param.Parameter(None, doc="`Beside`: the characters of the pair, once read.")
 
     @property

@@ -1,5 +1,7 @@
 """Choices of the panel Weights."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import param
@@ -20,23 +22,25 @@ SIDES = ("ours", "file")
 class WeightsChoices(param.Parameterized):
     """Which weights are seen, and how they fall with distance."""
 
-    weights_shown: Any = param.Selector(default="mix", objects=list(SHOWN))
-    weights_of: Any = param.Selector(
+    weights_shown: param.Selector[str] = param.Selector(default="mix", objects=list(SHOWN))
+    weights_of: param.Selector[str] = param.Selector(
         default="ours", objects=list(SIDES), doc="Whose weights the colours tell."
     )
-    truth: Any = param.Selector(
+    truth: param.Selector[str] = param.Selector(
         default="file", objects=list(SIDES), doc="What the other side is measured against."
     )
 
-    explain: Any = param.Boolean(
+    explain = param.Boolean(
         False, doc="Whether the card says how the chosen vertex comes to its weights."
     )
     explanation: Any = param.Parameter(
         None, doc="The binding, and what `cutcell.explain` says of a vertex of it; or None so far."
     )
 
-    falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
-    refine: Any = param.Selector(default=default("refine"), objects=list(REFINES))
-    alpha: Any = param.Number(default("alpha"), bounds=(0, 1))
-    max_influences: Any = param.Integer(default("max_influences"), bounds=(1, MOST))
-    threshold: Any = param.Number(default("threshold"), bounds=(0, 1))
+    falloff: param.Selector[str] = param.Selector(
+        default=default("falloff"), objects=list(FALLOFFS)
+    )
+    refine: param.Selector[str] = param.Selector(default=default("refine"), objects=list(REFINES))
+    alpha = param.Number(default("alpha"), bounds=(0, 1))
+    max_influences = param.Integer(default("max_influences"), bounds=(1, MOST))
+    threshold = param.Number(default("threshold"), bounds=(0, 1))

@@ -6,8 +6,10 @@ import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+import param
 import pytest
 
+from cutcell_app.state import State
 from tests.test_layers import ROOT, imports_of, modules_of, package_of
 
 APP = ROOT / "app"
@@ -91,3 +93,14 @@ def test_the_server_brings_no_plotting_library():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
+
+
+def test_each_choice_of_the_state_is_declared_once():
+    # One of two with the same name would silently stand for both.
+    classes = [one for one in State.__mro__ if one.__module__.startswith(State.__module__)]
+    names = [
+        name for one in classes for name, value in vars(one).items()
+        if isinstance(value, param.Parameter) and name != "name"
+    ]  # fmt: skip
+    assert len(names) > 100
+    assert sorted(names) == sorted(set(names))
