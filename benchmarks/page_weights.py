@@ -17,11 +17,11 @@ from .timing import Times
 from .visitors import served
 
 START = "?panel=weights&falloff=paper&alpha=0.2"
-MOST = "Influences per vertex, at most"
+MOST = "Max influences"
 SLIDERS = {
     "smoothness α": ("Smoothness α", "mix"),
     "most influences": (MOST, "count"),
-    "threshold": ("Drop weights below", "count"),
+    "threshold": ("Ignore weights below", "count"),
 }
 """The slider that is moved by ten steps, or one, and what the colours show meanwhile."""
 
@@ -54,6 +54,7 @@ def _moved(browser: Browser, address: str, slider: str, colours: str, rounds: in
     page = visitor.page
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
     page.wait_for_timeout(1500)  # the sidebar follows what was bound
+    page.get_by_role("button", name="Falloff").click()
     thumb = page.get_by_role("slider", name=slider)
     key = "ArrowLeft" if slider == MOST else "Shift+ArrowRight"
     back = "ArrowRight" if slider == MOST else "Shift+ArrowLeft"
