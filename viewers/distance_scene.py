@@ -101,7 +101,8 @@ def distance_legend(rig: Rig, joint: int, limits: tuple[float, float]) -> Legend
 
 def file_units(length: float, rig: Rig) -> str:
     """Return a length in longest sides of the mesh, as a legend writes it."""
-    return f"{length * longest_side(rig):.3g} in the file's units"
+    in_file = length * longest_side(rig)
+    return f"{in_file:{'.3g' if in_file < 1000 else '.0f'}} in the file's units"
 
 
 def longest_side(rig: Rig) -> float:
