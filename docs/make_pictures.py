@@ -40,6 +40,8 @@ from tests.app.browser import Visit, served  # noqa: E402
 PICTURES = ROOT / "docs" / "pictures"
 SIZE = (1080, 810)
 SHELL = (0.13, 0.16, 0.21)
+WALK = "biped.glb walk.gif --panel pose --clip walk --no-bones --no-legend"
+WALK_SIZE = (560, 420)
 MAX_BYTES = 400_000
 OCTOPUS_ARM = "armA4"
 TOE, CHEST = 10876, 4911
@@ -74,14 +76,20 @@ def scenes() -> None:
 
 
 def figures() -> None:
-    """Run the commands of docs/pictures.md whose pictures are shown there."""
+    """Run the commands of docs/pictures.md whose pictures are shown there, and README's."""
     document = (ROOT / "docs" / "pictures.md").read_text(encoding="utf-8")
     for command in re.findall(r"^cutcell render (.* figure-.*)$", document, re.MULTILINE):
-        rig, out, *options = shlex.split(command)
-        argv = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
-        size = "x".join(map(str, SIZE))
-        done = [sys.executable, "-m", "cutcell", "render", *argv, "--quiet", "--size", size]
-        subprocess.run(done, check=True, cwd=ROOT)
+        render(command, SIZE)
+    render(WALK, WALK_SIZE)
+
+
+def render(command: str, size: tuple[int, int]) -> None:
+    """Run `cutcell render` with the options of a command, on a demo."""
+    rig, out, *options = shlex.split(command)
+    argv = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
+    shape = "x".join(map(str, size))
+    done = [sys.executable, "-m", "cutcell", "render", *argv, "--quiet", "--size", shape]
+    subprocess.run(done, check=True, cwd=ROOT)
 
 
 def cutaway(rig: Rig, resolution: int) -> Description:
