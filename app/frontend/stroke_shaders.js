@@ -28,7 +28,7 @@ const WIDE = `
     gap = dash * scale / w > 3.0 * unit ? 0.55 : 2.0;
     return thick > 0.0 ? clamp(spaced, thin, 6.0 * pixels) : 0.5 * pixels + thin;
   }
-  // What lies in a surface is seen: it is as near as its own front.
+  // A stroke in a surface is seen: it is as near as the front of that surface.
   void lift(vec3 place, float radius) {
     vec4 front = seen * vec4(place - radius * gl_Position.w / scale * vec3(seen[0][3], seen[1][3], seen[2][3]), 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;

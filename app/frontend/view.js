@@ -75,7 +75,7 @@ export class View {
     })
   }
 
-  // The rest of the page around the canvas, which a server stands behind.
+  // The rest of the page around the canvas; a page without a server has none.
   join() {
     const {model, overlay} = this
     const uploader = new Uploader(model, {

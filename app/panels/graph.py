@@ -51,7 +51,7 @@ def graph(session: Session) -> pmui.Column:
     state = session.state
     return pmui.Column(
         intro("The paths that distances are measured on: along the mesh and through the inside."),
-        section("Resolution", _shown(state)),
+        section("Resolution", _resolution(state)),
         section(
             "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
         ),
@@ -62,7 +62,7 @@ def graph(session: Session) -> pmui.Column:
     )
 
 
-def _shown(state: State) -> pmui.RadioButtonGroup:
+def _resolution(state: State) -> pmui.RadioButtonGroup:
     """Return the choice between a graph that is easy to read and the one of the weights."""
 
     def options() -> tuple[dict[str, int], int]:

@@ -1,4 +1,4 @@
-"""What a page's address says, as choices of a picture."""
+"""Addresses of the page, as choices of a picture."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,7 +12,7 @@ from ..state.method import GRAPH, WEIGHTS, effective
 from ..state.url import CAMERA, from_query, simple
 
 UNSEEN = ("tour", "corrections")
-"""What an address may say that no picture follows."""
+"""Parts of an address that no picture follows."""
 OPTIONS = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
     "skeleton": ("skeleton",), "bone": ("weights_shown", "compare_field"),
@@ -22,7 +22,7 @@ OPTIONS = {
 
 @dataclass(frozen=True)
 class Address:
-    """What an address says.
+    """Content of an address.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Address:
 
 
 def read_address(text: str) -> Address:
-    """Return what the address of a page says, or what stands behind its question mark.
+    """Return the content of a page's address, or of its part after the question mark.
 
     The character that it names is not opened.
 

@@ -167,9 +167,9 @@ def kinds_legend(state: State) -> Legend | None:
 
 
 def _title(state: State) -> str:
-    shown = state.graph_resolution or state.resolution
-    return f"Graph, R = {shown}" + (
-        "" if shown == state.resolution else f" (weights: {state.resolution})"
+    resolution = state.graph_resolution or state.resolution
+    return f"Graph, R = {resolution}" + (
+        "" if resolution == state.resolution else f" (weights: {state.resolution})"
     )
 
 

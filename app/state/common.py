@@ -9,7 +9,7 @@ import param
 from .panels import PANELS
 
 CUTS = ("auto", "off", "x", "y", "z", "free")
-"""What the body is cut across; a free plane has any direction, and auto is z on the panel graph."""
+"""Cuts through the body; a free plane has any direction, and auto is z on the panel graph."""
 
 
 class Common(param.Parameterized):
@@ -57,18 +57,18 @@ class Common(param.Parameterized):
 
     @property
     def bare(self) -> bool:
-        """Whether what stands there is a mesh without a skeleton: it has a graph, and no more."""
+        """Whether the character is a mesh without a skeleton: it has a graph, and no more."""
         return self.rig is not None and not len(self.rig.skeleton.joints)
 
     @property
     def cut_across(self) -> str:
-        """What the body is cut across on this panel; "off" for nothing."""
+        """Axis that the body is cut across on this panel; "off" for none."""
         auto = "z" if self.panel == "graph" else "off"
         return auto if self.cut_axis == "auto" else str(self.cut_axis)
 
     @property
     def graph(self) -> Any:
-        """The graph of what stands there; None so far."""
+        """The graph of the character; None so far."""
         return self.bare_graph if self.binding is None else self.binding.graph
 
     @property
@@ -81,4 +81,4 @@ class Common(param.Parameterized):
 
 UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
                     "own", "tier", "rendered"})  # fmt: skip
-"""What the scene does not depend on."""
+"""Choices that the scene does not depend on."""

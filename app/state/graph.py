@@ -15,7 +15,7 @@ READABLE = 40
 """Lattice cells along the longest side of a graph that is easy to read on a screen."""
 
 MODULES = {"open3d": "open3d", "embree": "embreex", "fast": "igl"}
-"""What else casts rays or computes winding numbers, and the module that each needs."""
+"""Libraries that also cast rays or compute winding numbers, and the module of each."""
 INSTALLED = [name for name, module in MODULES.items() if find_spec(module)]
 
 LAYERS = {
@@ -55,7 +55,7 @@ class GraphChoices(param.Parameterized):
     cut_keeps: param.Selector[str] = param.Selector(
         default="face",
         objects=["half", "face", "slab"],
-        doc="Behind a cut: all, of the interior the first cells only, or what lies between two "
+        doc="Behind a cut: all, of the interior the first cells only, or the part between two "
         "planes.",
     )
     slab = param.Number(0.1, bounds=(0.01, 0.6), doc="Between the planes, of the longest side.")

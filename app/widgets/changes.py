@@ -152,8 +152,8 @@ def _reading(reading: Reading | None) -> dict[str, Any] | None:
     values = None if reading.values is None else _flat(reading.values, np.float32)
     names = [shown_name(name) for name in reading.names]
     text = printable(reading.text)
-    shown = {"percent": reading.percent, "unit": reading.unit}
-    return {"text": text, "values": values, "names": names, **shown}
+    scale = {"percent": reading.percent, "unit": reading.unit}
+    return {"text": text, "values": values, "names": names, **scale}
 
 
 def _legend(legend: Legend | None) -> dict[str, Any] | None:
@@ -178,8 +178,8 @@ def _same(a: NDArray | None, b: NDArray | None) -> bool:
 def _same_reading(old: Reading | None, new: Reading | None) -> bool:
     if old is None or new is None:
         return old is new
-    shown = attrgetter("text", "names", "percent", "unit")
-    return shown(old) == shown(new) and _same(old.values, new.values)
+    fields = attrgetter("text", "names", "percent", "unit")
+    return fields(old) == fields(new) and _same(old.values, new.values)
 
 
 def _same_skin(old: Actor, new: Actor) -> bool:
