@@ -42,7 +42,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("gallery_pictures", "matplotlib"),
     "download_all_examples": False,
     "show_signature": False,
-    "capture_repr": (),
+    "capture_repr": ("_repr_html_",),  # interactive pages, and tables of counts
     "min_reported_time": 1e9,
     "within_subsection_order": "FileNameSortKey",
 }
