@@ -96,13 +96,14 @@ def shown_distance(distance: ArrayLike, limits: tuple[float, float]) -> NDArray[
 def distance_legend(rig: Rig, joint: int, limits: tuple[float, float]) -> Legend:
     """Return the legend of one joint's distance field; limits are in longest sides."""
     name = rig.skeleton.names[joint]
-    return Legend(f"Distance from {name}", "distance", "0", file_units(limits[1], rig))
+    high = f"{file_units(limits[1], rig)} in the file's units"
+    return Legend(f"Distance from {name}", "distance", "0", high)
 
 
 def file_units(length: float, rig: Rig) -> str:
-    """Return a length in longest sides of the mesh, as a legend writes it."""
+    """Return a length in longest sides of the mesh, written in the file's units."""
     in_file = length * longest_side(rig)
-    return f"{in_file:{'.3g' if in_file < 1000 else '.0f'}} in the file's units"
+    return f"{in_file:{'.3g' if in_file < 1000 else '.0f'}}"
 
 
 def longest_side(rig: Rig) -> float:

@@ -5,7 +5,7 @@ from typing import Any
 
 from cutcell.geodesics import path_length, shortest_path
 from cutcell_viewers.description import Actor, Description, Legend
-from cutcell_viewers.distance_scene import distance_colors, distance_limits
+from cutcell_viewers.distance_scene import distance_colors, distance_limits, file_units
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY, MARK, SOURCE
 from cutcell_viewers.start_scene import first_distances, start_scene
@@ -51,7 +51,7 @@ def distance(state: State, memo: Memo) -> Description:
     elif path is not None:
         rig = state.rig
         actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, in_scene(state, path)))
-        swatches += ((MARK, f"shortest path, {path_length(path):.3f} long"),)
+        swatches += ((MARK, f"shortest path, {file_units(path_length(path), rig)} long"),)
     if state.wave:
         swatches += ((BODY, "not reached yet"),)
     front = state.front * limits[1] if state.wave else None
@@ -86,7 +86,7 @@ def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]
     )
     first = first_distances(distances, joint)
     most = float(first.max(initial=0))
-    return parts, (SOURCE, f"{len(first)} sources, up to {most:.3f} from the bone")
+    return parts, (SOURCE, f"{len(first)} sources, up to {file_units(most, rig)} from the bone")
 
 
 def path_of(state: State, memo: Memo) -> Any:

@@ -142,7 +142,8 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
     if state.edge_colors == "depth":
         depth = memo("depth", (shown,), lambda: depth_field(shown))
         most = distance_limits(depth)[1]
-        legend = Legend("Depth below the surface", "depth", "0", file_units(most, state.rig))
+        high = f"{file_units(most, state.rig)} in the file's units"
+        legend = Legend("Depth below the surface", "depth", "0", high)
         return depth, {"shades": "depth"}, legend
     if state.edge_colors == "component":
         colors, count = memo("parts", (shown,), lambda: component_colors(shown))

@@ -12,7 +12,12 @@ from cutcell.geodesics import BoneDistances, path_length
 from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Description
-from cutcell_viewers.distance_scene import distance_colors, distance_limits, distance_look
+from cutcell_viewers.distance_scene import (
+    distance_colors,
+    distance_limits,
+    distance_look,
+    file_units,
+)
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY
 
@@ -58,7 +63,7 @@ def side_by_side(state: State, memo: Memo) -> Description:
         if path is not None and len(path):
             tube = memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
             actors[f"path {view}"] = replace(tube, view=view)
-            title += f" · {path_length(path) / _size(rig):.3f}"
+            title += f" · {file_units(path_length(path) / _size(rig), rig)}"
         elif path is not None:
             title += " · no path"
         see = 1.0 if path is None else BODY_OPACITY_WITH_PATH

@@ -93,8 +93,7 @@ def test_from_a_clicked_vertex_each_draws_its_path(state):
     for view, name in enumerate(state.measures):
         path = measured_of(state, name).path_from(0)
         assert scene.actors[f"path {view}"].view == view
-        length = path_length(path) / state.binding.graph.lattice.size
-        assert scene.views[view].endswith(f" · {length:.3f}")
+        assert scene.views[view].endswith(f" · {path_length(path):.3g}")
     state.path = False
     assert "path 0" not in resolve(state).actors
 
