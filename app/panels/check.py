@@ -31,16 +31,37 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 def check(session: Session) -> pmui.Column:
     """Return the controls of the panel Diagnose."""
     state = session.state
-    place = column()
+    places: dict[str, pmui.Column] = {}  # of the details, by the code of the finding
+    repairs, findings, exported = column(), column(), column()
 
-    def listed(*events: Any) -> None:
-        place.objects = [*_repairs(session), *_findings(session), *_exported(session)]
+    def list_repairs(*events: Any) -> None:
+        repairs.objects = _repairs(session)
 
-    state.param.watch(listed, ["diagnosis", "export_diagnosis", "finding", "repair"])
-    listed()
+    def list_findings(*events: Any) -> None:
+        findings.objects = _findings(session, places)
+        show_details()
+
+    def list_exported(*events: Any) -> None:
+        exported.objects = _exported(session, places)
+        show_details()
+
+    def show_details(*events: Any) -> None:
+        """Show details of the chosen finding alone; all buttons stay, and the focus with them."""
+        for code, place in places.items():
+            details = _details(session) if code == state.finding else []
+            if details or place.objects:
+                place.objects = details
+
+    state.param.watch(list_repairs, ["diagnosis", "repair"])
+    state.param.watch(list_findings, "diagnosis")
+    state.param.watch(list_exported, ["diagnosis", "export_diagnosis"])
+    state.param.watch(show_details, "finding")
+    list_repairs()
+    list_findings()
+    list_exported()
     return column(
         intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
-        section("", place, margin=(6, 20, 4, 20)),
+        section("", repairs, findings, exported, margin=(6, 20, 4, 20)),
     )
 
 
@@ -61,64 +82,73 @@ def counted(counts: dict[str, int]) -> str:
     return ", ".join(parts) or "nothing"
 
 
-def _findings(session: Session) -> list[Any]:
+def _findings(session: Session, places: dict[str, pmui.Column]) -> list[Any]:
     """Return the findings below a heading for each severity."""
     diagnosis = session.state.diagnosis
     if diagnosis is None:
         return []
     return [
         section(
-            f"{severity}s", *(_entry(session, one) for one in diagnosis.of(severity)), margin=(8, 0)
+            f"{severity}s",
+            *(_entry(session, finding, finding.code, places) for finding in diagnosis.of(severity)),
+            margin=(8, 0),
         )
         for severity in SEVERITIES
         if diagnosis.of(severity)
     ]
 
 
-def _exported(session: Session) -> list[Any]:
+def _exported(session: Session, places: dict[str, pmui.Column]) -> list[Any]:
     """Return the findings about the weights that an export contains."""
     state = session.state
     if state.bare or state.binding is None:
         return []
-    diagnosis = state.export_diagnosis
-    if diagnosis is None:
+    if state.export_diagnosis is None:
         lines: list[Any] = [_line("Checking the weights ...")]
     else:
-        lines = [_entry(session, one, EXPORT) for one in diagnosis.findings]
+        lines = [
+            _entry(session, finding, EXPORT + finding.code, places)
+            for finding in state.export_diagnosis.findings
+        ]
     return [section("Weights in the export", *(lines or [_line("No faults.")]), margin=(8, 0))]
 
 
-def _entry(session: Session, finding: Finding, prefix: str = "") -> pmui.Column:
-    """Return a finding as a line; with advice and repair if it is looked at."""
-    code = prefix + finding.code
-    is_chosen = session.state.finding == code
+def _entry(
+    session: Session, finding: Finding, code: str, places: dict[str, pmui.Column]
+) -> pmui.Column:
+    """Return a finding as a button and a line, with a place for its details."""
     title = button(
-        finding.title,
-        lambda: look_at(session, code),
-        icon=ICONS[finding.severity],
-        **LINE,
+        finding.title, lambda: look_at(session, code), icon=ICONS[finding.severity], **LINE
     )
-    lines = [title, _line(finding.message)]
-    if is_chosen and prefix:
-        lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
-        if has_weights(session.state.rig) and len(finding.vertices):
+    places[code] = column()
+    return column(title, _line(finding.message), places[code], margin=(0, 0, 6, 0))
+
+
+def _details(session: Session) -> list[Any]:
+    """Return details of the chosen finding, its advice, and what repairs it."""
+    state = session.state
+    finding = state.selected_finding
+    if finding is None:
+        return []
+    lines: list[Any] = [_line(text) for text in finding.details[:MAX_DETAILS]]
+    if state.finding.startswith(EXPORT):
+        if has_weights(state.rig) and len(finding.vertices):
             keep = partial(keep_file_vertices, session, finding.vertices)
             lines.append(button("Use the file's weights there", keep, icon="history"))
-    elif is_chosen:
-        more = len(finding.details) - MAX_DETAILS
-        lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
-        lines += [_line(f"and {more} more")] if more > 0 else []
-        lines.append(_line(finding.advice, "text.primary"))
-        if finding.repair:
-            lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
-            lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
-        if finding.code in LEFT_OUT:
-            lines += _joint_choices(session, finding.joints)
-        if finding.code in OF_PARTS and not session.state.bare:
-            vertex = int(finding.vertices[0])
-            see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(button("Choose how these parts are bound", see, icon="category"))
-    return column(*lines, margin=(0, 0, 6, 0))
+        return lines
+    more = len(finding.details) - MAX_DETAILS
+    lines += [_line(f"and {more} more")] if more > 0 else []
+    lines.append(_line(finding.advice, "text.primary"))
+    if finding.repair:
+        lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
+        lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
+    if finding.code in LEFT_OUT:
+        lines += _joint_choices(session, finding.joints)
+    if finding.code in OF_PARTS and not state.bare:
+        vertex = int(finding.vertices[0])
+        see = partial(state.param.update, panel="weights", part=vertex)
+        lines.append(button("Choose how these parts are bound", see, icon="category"))
+    return lines
 
 
 def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Button]:

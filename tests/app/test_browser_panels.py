@@ -194,6 +194,7 @@ def test_a_finding_is_shown_where_it_is(visit, robot):
     visit.button(lost.title).click()
     visit.expect_text(lost.advice)
     visit.settle()
+    expect(visit.button(lost.title)).to_be_focused()
     marks = visit.report()["actors"]
     assert marks["finding faces"]["visible"]
     far = visit.look()
