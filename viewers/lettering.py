@@ -17,6 +17,8 @@ from .tiles import Tile
 CARD = {"light": (255, 255, 255, 216), "dark": (24, 28, 36, 216)}
 MOST = 200
 """Letters of what is written; far fewer are seen."""
+SMALLER = 1.4
+"""How many times smaller captions may become to fit."""
 LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
 
 
@@ -92,16 +94,23 @@ def put_card(
 def write_captions(
     picture: NDArray[np.uint8], captions: tuple[str, ...], places: list[Tile], theme: Theme
 ) -> NDArray[np.uint8]:
-    """Write each view's caption at its upper edge, and draw a line between the views."""
+    """Write each view's caption at its upper edge, and draw a line between the views.
+
+    Captions that are too wide for their views are written smaller, all alike, or else shortened.
+    """
     unit = _unit(picture.shape[1::-1])
     font, pad = _font(1.25 * unit), round(0.7 * unit)
+    names = [printable(text, MOST) for text in captions]
+    room = max(min(width for _, _, width, _ in places) - 6 * pad, 1)
+    longest = max(map(font.getlength, names))
+    font = _font(1.25 * unit / min(max(longest / room, 1), SMALLER))
     image, draw = _open(picture)
-    for text, (left, top, width, height) in zip(captions, places, strict=True):
+    for text, (left, top, width, height) in zip(names, places, strict=True):
         if left:
             draw.line((left, top, left, top + height), fill=LINE[theme.name], width=1)
         if top:
             draw.line((left, top, left + width, top), fill=LINE[theme.name], width=1)
-        name = _shortened(printable(text, MOST), font, width - 6 * pad)
+        name = _shortened(text, font, width - 6 * pad)
         half = font.getlength(name) / 2 + 1.4 * pad
         middle, upper = left + width / 2, top + 1.6 * pad
         box = (middle - half, upper, middle + half, upper + _height(font) + 1.6 * pad)

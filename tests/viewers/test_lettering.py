@@ -9,13 +9,27 @@ from cutcell_viewers.description import Legend
 from cutcell_viewers.palette import LIGHT
 
 
-@pytest.mark.parametrize("height", range(690, 730, 5))
-def test_a_legend_is_as_wide_as_its_title(height, monkeypatch):
-    written = []
-    shortened = lettering._shortened
+@pytest.fixture
+def written(monkeypatch):
+    """Return a list of the texts that are written, shortened where they were too wide."""
+    texts, shortened = [], lettering._shortened
     monkeypatch.setattr(
-        lettering, "_shortened", lambda *of: written.append(shortened(*of)) or written[-1]
+        lettering, "_shortened", lambda *of: texts.append(shortened(*of)) or texts[-1]
     )
+    return texts
+
+
+def test_captions_of_narrow_views_are_smaller_and_whole(written):
+    captions = ("Along voxels, R = 64 · 0.451",) * 4
+    picture = np.zeros((810, 1080, 3), np.uint8)
+    lettering.write_captions(
+        picture, captions, [(x, 0, 270, 700) for x in range(0, 1080, 270)], LIGHT
+    )
+    assert tuple(written) == captions
+
+
+@pytest.mark.parametrize("height", range(690, 730, 5))
+def test_a_legend_is_as_wide_as_its_title(height, written):
     title = "Each bone's colour, mixed by weight"
     lettering.legend_card(Legend(title), LIGHT, (980, height))
     assert written == [title]
