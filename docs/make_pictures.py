@@ -226,6 +226,8 @@ def take(visit: Visit, name: str) -> None:
 def shrink(path: Path) -> None:
     """Store a picture in as few bytes as it takes; with fewer colours if they are too many."""
     with Image.open(path) as image:
+        if image.mode == "P":
+            return
         whole = image.convert("RGB")
     whole.save(path, optimize=True)
     if path.stat().st_size > MAX_BYTES:

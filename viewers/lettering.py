@@ -101,7 +101,7 @@ def write_captions(
     unit = _unit(picture.shape[1::-1])
     font, pad = _font(1.25 * unit), round(0.7 * unit)
     names = [printable(text, MOST) for text in captions]
-    room = max(min(width for _, _, width, _ in places) - 6 * pad, 1)
+    room = max(min(width for _, _, width, _ in places) - 7 * pad, 1)
     longest = max(map(font.getlength, names))
     font = _font(1.25 * unit / min(max(longest / room, 1), SMALLER))
     image, draw = _open(picture)
@@ -110,7 +110,7 @@ def write_captions(
             draw.line((left, top, left, top + height), fill=LINE[theme.name], width=1)
         if top:
             draw.line((left, top, left + width, top), fill=LINE[theme.name], width=1)
-        name = _shortened(text, font, width - 6 * pad)
+        name = _shortened(text, font, width - 6 * pad)  # widths of letters are rounded
         half = font.getlength(name) / 2 + 1.4 * pad
         middle, upper = left + width / 2, top + 1.6 * pad
         box = (middle - half, upper, middle + half, upper + _height(font) + 1.6 * pad)

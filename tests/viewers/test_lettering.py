@@ -19,9 +19,10 @@ def written(monkeypatch):
     return texts
 
 
-def test_captions_of_narrow_views_are_smaller_and_whole(written):
+@pytest.mark.parametrize("height", range(750, 950, 10))
+def test_captions_of_narrow_views_are_smaller_and_whole(height, written):
     captions = ("Along voxels, R = 64 · 0.451",) * 4
-    picture = np.zeros((810, 1080, 3), np.uint8)
+    picture = np.zeros((height, 1080, 3), np.uint8)
     lettering.write_captions(
         picture, captions, [(x, 0, 270, 700) for x in range(0, 1080, 270)], LIGHT
     )
