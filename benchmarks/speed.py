@@ -160,10 +160,11 @@ def distances_table(
         "cutcell",
         [whole, "scipy Dijkstra"],
         ["scipy Dijkstra"],
-        "On the same graph, from the same sources. scipy gets its matrix ready-made, with a "
-        "node for each bone; cutcell starts from the graph. Beside it all of "
-        "`bone_distances`, which finds the sources first and ends with what no path reaches. "
-        "The distances differ by less than 1e-6 (relative), or this table says so.",
+        "On the same graph, from the same sources. scipy's input is a finished matrix with a "
+        "node for each bone; cutcell starts from the graph. The next column is the time of "
+        "`bone_distances` as a whole, which also finds the sources first and finally handles "
+        "vertices that no path reaches. The distances differ by less than 1e-6 (relative), "
+        "unless stated otherwise.",
     )
     worst = 0.0
     for character, resolution in _each(characters, options):
@@ -210,9 +211,9 @@ def bind_table(characters: list[Character], options: argparse.Namespace) -> Tabl
         ["paper's falloff", "connectivity 6", "recipe", blender],
         ["recipe", blender],
         "`bind`, warm, at R=64: with the defaults; with any-angle distances and the paper's "
-        'falloff (`falloff="paper"`); and the paper\'s graph too (`connectivity=6`), as the '
-        "recipe does it. Blender's seconds came with the reference weights; they were measured "
-        "elsewhere, on another machine.",
+        'falloff (`falloff="paper"`); and with the paper\'s graph as well (`connectivity=6`), as '
+        "in the recipe. Blender's times are from the reference weights and were measured on "
+        "another machine.",
     )
     for character in characters:
         rig = character.rig
