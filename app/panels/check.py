@@ -1,4 +1,4 @@
-"""Diagnose: what is wrong with the character, where, and what to do about it."""
+"""The panel Check: what is wrong with the character, where, and what to do about it."""
 
 from functools import partial
 from typing import Any
@@ -29,7 +29,7 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 
 
 def check(session: Session) -> pmui.Column:
-    """Return the controls of the panel Diagnose."""
+    """Return the controls of the panel Check."""
     state = session.state
     places: dict[str, pmui.Column] = {}  # of the details, by the code of the finding
     repairs, findings, exported = column(), column(), column()

@@ -25,7 +25,7 @@ def named(finding: Finding) -> str:
 
 
 def check(state: State, memo: Memo) -> Description:
-    """Return the scene of the panel Diagnose; plain while no finding is looked at."""
+    """Return the scene of the panel Check; plain while no finding is looked at."""
     rig, finding = state.rig, state.selected_finding
     if finding is None:
         return Description(character(state, memo))
