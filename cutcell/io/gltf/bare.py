@@ -11,7 +11,7 @@ from ...errors import MeshError
 from ...rig import Part, Rig, Skeleton, TriangleMesh
 from .container import Document
 from .nodes import Nodes
-from .read.parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
+from .read.parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
 from .read.primitives import StoredFaces, draws_triangles, primitives, read_triangles
 
 
@@ -91,12 +91,15 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
     if not faces:
         raise MeshError("its meshes have no triangles")
     whole = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
+    left_out = left_out_meshes(document, nodes, [one.node for one in stored], ())
+    document.forget()
     return Rig(
         whole,
         Skeleton([], []),  # type: ignore[arg-type]
         name=name,
         parts=tuple(parts),
-        left_out=left_out_meshes(document, nodes, [one.node for one in stored], ()),
+        left_out=left_out,
+        warnings=(*document.warnings, *left_out_warnings(left_out, ())),
         source=BareSource(document, whole, stored, tuple(stored_faces)),
     )
 

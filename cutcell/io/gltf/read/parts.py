@@ -6,10 +6,15 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ....rig import LeftOut
+from ....rig import Attachment, LeftOut
+from ....runtime.display import listed
 from ..container import Document
 from ..nodes import Nodes
 from .primitives import draws_triangles, primitives
+
+
+OUTSIDE = "is outside of the scene"
+NO_JOINT = "has no skin and hangs on no joint"
 
 
 def mesh_name(document: Document, nodes: Nodes, node: int) -> str:
@@ -40,6 +45,12 @@ def vanishes(nodes: Nodes, node: int) -> bool:
     return bool(np.linalg.matrix_rank(nodes.world[node][:3, :3]) < 2)
 
 
+def draws_mesh(document: Document, nodes: Nodes, node: int) -> bool:
+    """Return whether a node's mesh has triangles, not only points or lines."""
+    drawn = primitives(document, nodes.raw[node]["mesh"], document.label("nodes", node))
+    return any(draws_triangles(p) for p in drawn)
+
+
 def left_out_meshes(
     document: Document, nodes: Nodes, bound: Iterable[int], attached: Iterable[int]
 ) -> tuple[LeftOut, ...]:
@@ -53,15 +64,35 @@ def left_out_meshes(
             continue
         mesh = node["mesh"]
         if mesh not in draws:
-            drawn = primitives(document, mesh, document.label("nodes", i))
-            draws[mesh] = any(draws_triangles(p) for p in drawn)
+            draws[mesh] = draws_mesh(document, nodes, i)
         if not draws[mesh]:
             why = "is points or lines"
         elif i not in in_scene:
-            why = "is outside of the scene"
+            why = OUTSIDE
         elif vanishes(nodes, i):
             why = "is scaled to nothing"
         else:
-            why = "has no skin and hangs on no joint"
+            why = NO_JOINT
         left_out.append(LeftOut(mesh_name(document, nodes, i), why))
     return tuple(left_out)
+
+
+def left_out_warnings(
+    left_out: Iterable[LeftOut], attachments: Iterable[Attachment]
+) -> tuple[str, ...]:
+    """List the meshes that are seen in the file and are not bound, in sentences."""
+    outside = [one.name for one in left_out if one.why == OUTSIDE]
+    alone = [one.name for one in left_out if one.why == NO_JOINT]
+    rigid = [one.name for one in attachments if not one.hidden]
+    sentences = (
+        (rigid, "without a skin hang on a joint and are not bound; `bind --accessories` binds them"),
+        (alone, "without a skin hang on no joint and are left out; parent them to a joint or skin "
+         "them"),
+        (outside, "outside of the default scene are left out; make their scene the default one to "
+         "read them"),
+    )  # fmt: skip
+    return tuple(
+        f"{'a mesh' if len(names) == 1 else f'{len(names)} meshes'} {what}: {listed(names)}"
+        for names, what in sentences
+        if names
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,16 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import CutcellError, FileError, MeshError
-from ....rig import Attachment, Part, Rig, Skeleton, TriangleMesh
+from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
 from ...weights import ReadWeights
 from ..bare import read_bare
 from ..container import Document, read_document
 from ..deform import read_deform
 from ..nodes import Nodes
+from .added_skins import bind_to_bones
+from .attachments import bind_accessories, moved, read_attachments
 from .clips import read_clips
 from .compressed import decompress_draco, decompress_meshopt
-from .parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name
 from .primitives import (
     StoredFaces,
     attributes,
@@ -28,7 +31,6 @@ from .primitives import (
     primitives,
     read_faces,
     read_positions,
-    read_triangles,
     read_weights,
 )
 from .skins import Bind, read_bind, read_skeleton
@@ -64,14 +66,29 @@ class GltfSource:
     """The node of each attachment."""
 
 
-def read_gltf(path: Path) -> Rig:
-    """Load a GLB or glTF file; see `cutcell.load`."""
+def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
+    """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
+    with malformed():
+        document = plain_document(path)
+        if not bare or _skinned_nodes(Nodes(document)):
+            return read_rig(document, path, accessories=accessories, has_bones=True)
+        return read_bare(document, Nodes(document), path.stem)
+
+
+def plain_document(path: Path) -> Document:
+    """Read a document and decompress its accessors."""
+    document = read_document(path)
+    decompress_meshopt(document)
+    decompress_draco(document)
+    document.allow()  # what was compressed is larger now
+    return document
+
+
+@contextmanager
+def malformed() -> Iterator[None]:
+    """Turn what a malformed document raises into a `FileError`."""
     try:
-        document = read_document(path)
-        decompress_meshopt(document)
-        decompress_draco(document)
-        document.allow()  # what was compressed is larger now
-        return read_rig(document, path)
+        yield
     except CutcellError:
         raise
     except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as e:
@@ -79,27 +96,45 @@ def read_gltf(path: Path) -> Rig:
         raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
 
 
-def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Rig:
-    """Return what a document with plain accessors holds; `world` is of `read_bind`."""
+def read_rig(
+    document: Document,
+    path: Path,
+    world: NDArray | None = None,
+    accessories: bool = False,
+    has_bones: bool = False,
+) -> Rig:
+    """Return what a document with plain accessors holds.
+
+    `world` is of `read_bind`. Meshes without a skin that hang on joints are bound with the others
+    if `accessories`. In a document without a skin, plain nodes may be joints if `has_bones`.
+    """
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
-    if not skinned:
-        rig = read_bare(document, nodes, path.stem)
-        document.forget()
-        return rig
-    for i in skinned:
-        document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
-    skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
-    bind = read_bind(document, nodes, skins, world)
+    if skinned:
+        for i in skinned:
+            document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
+        skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
+        bind = read_bind(document, nodes, skins, world)
+    else:
+        bones, why = bind_to_bones(document, nodes) if has_bones else (None, "")
+        if bones is None:
+            document.warnings += [why] if why else []
+            return read_bare(document, nodes, path.stem)
+        bind, skinned = bones, _skinned_nodes(nodes)
+    rigid = bind_accessories(document, nodes, bind) if accessories else {}
+    skinned = _skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
-    weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
+    shape = len(mesh.vertices), len(bind.nodes)
+    weights, sums = _dense(document, parts, stored.weights, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
     skeleton, warnings = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
-    attached = _read_attachments(document, nodes, bind)
+    attached = read_attachments(document, nodes, bind)
+    left_out = left_out_meshes(document, nodes, skinned, attached)
+    warnings += left_out_warnings(left_out, attached.values())
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
     document.forget()
@@ -113,7 +148,7 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         world=bind.world,
         allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
         parts=tuple(stored.named),
-        left_out=left_out_meshes(document, nodes, skinned, attached),
+        left_out=left_out,
         warnings=(*document.warnings, *warnings),
         weight_sums=sums,
         source=GltfSource(
@@ -171,7 +206,7 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
                 read = read_weights(document, primitive, len(positions), joints, label)
                 rows = slice(total, total := total + len(positions))
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
-                vertices.append(_moved(positions, bind.to_rig[skin]))
+                vertices.append(moved(positions, bind.to_rig[skin]))
                 weights.append(read)
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
@@ -195,28 +230,27 @@ def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
     return tuple(sorted((k, v) for k, v in named.items() if k.startswith(names)))
 
 
-def _moved(points: NDArray, matrix: NDArray) -> NDArray:
-    if np.array_equal(matrix, np.eye(4)):
-        return points
-    return points @ matrix[:3, :3].T + matrix[:3, 3]
-
-
 def _dense(
     document: Document,
     parts: list[StoredPart],
     stored: list[ReadWeights],
-    vertices: int,
-    joints: int,
+    shape: tuple[int, int],
+    rigid: Mapping[int, int],
 ) -> tuple[NDArray | None, NDArray | None]:
-    """Return the weights of all parts, and what each row summed to in the file."""
+    """Return the weights of all parts, and what each row summed to in the file.
+
+    `rigid` has the joint of each mesh that moves with a single one.
+    """
     if all(read.weights is None for read in stored):
         return None, None
-    document.allowance.take_weights(vertices, joints)
-    weights, sums = np.zeros((vertices, joints)), np.zeros(vertices)
+    document.allowance.take_weights(*shape)
+    weights, sums = np.zeros(shape), np.zeros(shape[0])
     for part, read in zip(parts, stored, strict=True):
         if read.weights is not None and read.sums is not None:
             weights[part.rows, part.joints] = read.weights
             sums[part.rows] = read.sums
+        elif part.primitives[0][0] in rigid:
+            weights[part.rows, rigid[part.primitives[0][0]]] = sums[part.rows] = 1
     return weights, sums
 
 
@@ -227,32 +261,3 @@ def _allowed(parts: list[StoredPart], vertices: int, joints: int) -> NDArray | N
     for part in parts:
         allowed[part.rows, part.joints] = True
     return allowed
-
-
-def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int, Attachment]:
-    """Return the attachment of each node that has one."""
-    place = {node: j for j, node in enumerate(bind.nodes)}
-    hidden = hidden_nodes(nodes)
-    attachments: dict[int, Attachment] = {}
-    nearest = nodes.nearest(place)
-    # From the mesh up to the joint by the local transforms: a joint that is scaled to nothing at
-    # rest (a hidden weapon) could not be inverted.
-    local = nodes.relative_to(bind.nodes)
-    for i, node in enumerate(nodes.raw):
-        if "mesh" not in node or "skin" in node or nearest[i] < 0:
-            continue
-        joint = place[nearest[i]]
-        vertices, faces, drawn = read_triangles(document, node["mesh"], document.label("nodes", i))
-        if not drawn or not local[i, :3, :3].any():
-            continue
-        document.allowance.take(vertices.nbytes + faces.nbytes, document.label("nodes", i))
-        to_rig = np.linalg.inv(bind.inverse[joint]) @ local[i]
-        if np.linalg.det(to_rig[:3, :3]) < 0:
-            faces = faces[:, ::-1]
-        name = node.get("name") or f"attachment {len(attachments)}"
-        try:
-            mesh = TriangleMesh(_moved(vertices, to_rig), faces)  # type: ignore[arg-type]
-        except MeshError as e:
-            raise MeshError(f"{document.label('nodes', i)}: {e}") from None
-        attachments[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
-    return attachments
