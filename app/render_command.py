@@ -212,7 +212,7 @@ def _write_page(
     view = check_choice("panel", choices["panel"] or "weights", VIEWS)
     method, loaded = chosen_method(options), load(rig, skeleton=skeleton)
     with naming(rig):
-        loaded.skeleton.require_joints()
+        loaded.require_joints()
         joint = None if choices["bone"] is None else find_bone(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
         binding = bind(loaded, method=method, progress=progress)

@@ -217,7 +217,7 @@ def _bind(
 def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:
     """Refuse what a stage would refuse, before the first one has begun."""
     Lattice.around(rig.mesh, method.resolution)
-    rig.skeleton.require_joints()
+    rig.require_joints()
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
     check_refinement(rig, **refinement)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)

@@ -123,7 +123,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
     """
     panel = check_choice("panel", choices.panel, RENDERED)
     if panel != "graph":
-        rig.skeleton.require_joints()
+        rig.require_joints()
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
     state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)
     if choices.bone is not None:

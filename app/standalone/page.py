@@ -80,7 +80,7 @@ def interactive_page(
         A mesh without a skeleton.
     """
     check_choice("view", view, VIEWS)
-    rig.skeleton.require_joints()
+    rig.require_joints()
     binding = bind(rig, progress=progress) if binding is None else binding
     packed = Packed()
     scenes = packed.plain(_record(rig, binding, progress))

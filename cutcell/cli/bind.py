@@ -119,7 +119,7 @@ def bind(
                 loaded, graph = _with_template(loaded, fits, how, progress)
         if corrected is not None and not len(loaded.skeleton.joints):
             loaded = corrected_rig(loaded, corrected)  # they may bring a skeleton
-        loaded.skeleton.require_joints()
+        loaded.require_joints()
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
         if corrected is not None:
             loaded = corrected_rig(loaded, corrected)

@@ -36,7 +36,7 @@ def joints(
 
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
-        loaded.skeleton.require_joints()
+        loaded.require_joints()
         chosen = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
     guess = deform_joints(loaded.mesh, loaded.skeleton)
     rows: list[dict[str, Any]] = []

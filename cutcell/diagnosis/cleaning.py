@@ -127,7 +127,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     """
     rig = as_rig(rig)
     resolution = check_resolution(resolution)
-    rig.skeleton.require_joints()
+    rig.require_joints()
     weights = rig.weights
     if weights is None or not weights.any():
         raise WeightsError("the rig has no weights that could be cleaned; bind computes some")

@@ -126,7 +126,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     """
     path = Path(path)
     with naming(path):
-        rig.skeleton.require_joints()
+        rig.require_joints()
         check_output(path)
         files = _files(path, rig)
         write_all(files)

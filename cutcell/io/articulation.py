@@ -18,12 +18,12 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig import Part, Rig, Skeleton, TriangleMesh
 from .allowance import Allowance
 from .deforming import KEY, with_deform
 from .files import one_line, read_bytes
 from .names import HALVES, has_halves, whole_characters
-from .weights import NO_WEIGHTS, ReadWeights, summed
+from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
 
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 REQUIRED = ("vertices", "faces", "joints", "bones")
@@ -59,7 +59,11 @@ def read_articulation(path: Path) -> Rig:
         skeleton,
         read.weights,
         name=path.stem,
-        warnings=(*warnings, *deform_warnings),
+        warnings=(
+            *warnings,
+            *deform_warnings,
+            *sum_warnings(read.sums, mesh.faces, [Part(path.stem, slice(None))]),
+        ),
         weight_sums=read.sums,
     )
 

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig import Part, Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
 from .materials.obj_materials import ColouredObj
 from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
 from .names import whole_characters
-from .weights import NO_WEIGHTS, ReadWeights, summed
+from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
 
 MAX_DIGITS = 20
 """Of a vertex' number."""
@@ -71,7 +71,11 @@ def read_rignet(path: Path) -> Rig:
             skeleton,
             read.weights,
             name=obj.stem,
-            warnings=(*read.warnings, *warnings),
+            warnings=(
+                *read.warnings,
+                *warnings,
+                *sum_warnings(read.sums, mesh.faces, [Part(obj.stem, slice(None))]),
+            ),
             weight_sums=read.sums,
             source=ColouredObj.of(obj, lines, mesh),
         )

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rig import Part
+from ..runtime.display import listed
 from ..runtime.memory import check_matrix
 
 LARGE = 1e300
 """Weights above it are scaled down before they are added: a sum must not overflow."""
+ROUNDING = 0.01
+"""Sums of weights that are stored in 8 bits differ from one by up to this."""
 COPIES = 2
 """Of the matrix at a time, before and after its rows are scaled."""
 
@@ -66,6 +71,34 @@ def summed(
     weights = np.zeros(shape)
     np.add.at(weights, (rows, columns), values)
     return ReadWeights(normalised(weights), warnings, sums + weights.sum(axis=1))
+
+
+def sum_warnings(
+    sums: NDArray[np.float64] | None, faces: NDArray[np.integer], parts: Iterable[Part]
+) -> list[str]:
+    """Count the vertices whose weights sum to zero, or not to one, with the names of their meshes.
+
+    Vertices without a face are not counted, nor those with a weight that counts as none.
+
+    Shapes: sums (n,), faces (m, 3).
+    """
+    if sums is None:
+        return []
+    is_used = np.zeros(len(sums), bool)
+    is_used[faces] = True
+    empty = is_used & (sums == 0)
+    off = is_used & (sums > 0) & (np.abs(sums - 1) > ROUNDING)
+    warnings = []
+    for rows, what in (
+        (empty, "no weight, so that no joint moves them. `cutcell bind` gives them some"),
+        (off, "weights that do not sum to one. They are scaled so that they do"),
+    ):
+        counts = {part.name: int(rows[part.vertices].sum()) for part in parts}
+        names = listed([f"{name}: {count:,}" for name, count in counts.items() if count])
+        if rows.any():
+            verb = "has" if rows.sum() == 1 else "have"
+            warnings.append(f"{rows.sum():,} of {is_used.sum():,} vertices ({names}) {verb} {what}")
+    return warnings
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

@@ -72,7 +72,7 @@ def clip_error(
     ParameterError
         `frames` out of range, or an unknown `count`.
     """
-    rig.skeleton.require_joints()
+    rig.require_joints()
     weights, targets = checked_pair(predicted, reference)
     check_fit(weights, rig.mesh, rig.skeleton)
     frames = check_integer("frames", frames, 1, 100_000)

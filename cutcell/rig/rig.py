@@ -174,6 +174,20 @@ class Rig(Summarized):
             "warnings": len(self.warnings),
         }
 
+    def require_joints(self) -> None:
+        """Refuse a rig without joints, and say why its file has none, as far as the reader says.
+
+        Raises
+        ------
+        SkeletonError
+            It has no joints.
+        """
+        try:
+            self.skeleton.require_joints()
+        except SkeletonError as e:
+            why = getattr(self.source, "why_bare", "")
+            raise SkeletonError(why or str(e)) from None
+
     def with_weights(self, weights: NDArray[np.float64] | None) -> Rig:
         """Return the same rig with other weights, shape (n, j), or with none."""
         return replace(self, weights=weights, weight_sums=None)

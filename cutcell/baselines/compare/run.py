@@ -99,7 +99,7 @@ def _chosen(
 def _compare_rig(
     rig: Rig, methods: Mapping[str, Baseline], turned: Turned, progress: Progress
 ) -> RigScore:
-    rig.skeleton.require_joints()
+    rig.require_joints()
     if rig.weights is None:
         raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
     progress(rig.name, 0.0)

@@ -44,7 +44,7 @@ def bind_content(
         begin = perf_counter()
         with tempfile.TemporaryDirectory() as folder:
             rig = read_content(content, Path(folder))
-        rig.skeleton.require_joints()
+        rig.require_joints()
         seconds["load"] = perf_counter() - begin
         needed = memory_needed(rig, parameters)
         record |= {"memory": needed, "warnings": list(rig.warnings)}

@@ -49,16 +49,22 @@ class BareSource:
     stored : list of StoredMesh
     faces : tuple of StoredFaces
         As they are now, if faces were repaired.
+    why_bare : str
+        Why there are no joints, where the file lets expect some.
     """
 
     document: Document
     mesh: TriangleMesh
     stored: list[StoredMesh]
     faces: tuple[StoredFaces, ...] = ()
+    why_bare: str = ""
 
 
-def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
-    """Return the scene's meshes as a rig without joints, in the scene's space and units."""
+def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig:
+    """Return the scene's meshes as a rig without joints, in the scene's space and units.
+
+    `why` says why it has no joints, if that may be a surprise.
+    """
     in_scene = set(nodes.in_scene())
     mesh_nodes = [i for i, node in enumerate(nodes.raw) if "mesh" in node and i in in_scene]
     mesh_nodes = mesh_nodes or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
@@ -99,8 +105,8 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
         name=name,
         parts=tuple(parts),
         left_out=left_out,
-        warnings=(*document.warnings, *left_out_warnings(left_out, ())),
-        source=BareSource(document, whole, stored, tuple(stored_faces)),
+        warnings=(*document.warnings, *filter(None, [why]), *left_out_warnings(left_out, ())),
+        source=BareSource(document, whole, stored, tuple(stored_faces), why),
     )
 
 

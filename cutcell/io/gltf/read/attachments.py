@@ -13,7 +13,7 @@ from ....rig import Attachment, TriangleMesh
 from ..container import Document
 from ..nodes import Nodes
 from .added_skins import add_skins, has_volume
-from .parts import hidden_nodes, vanishes
+from .parts import draws_mesh, hidden_nodes, vanishes
 from .primitives import read_triangles
 from .skins import Bind
 
@@ -51,14 +51,20 @@ def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[_Hanging]
 
 
 def bind_accessories(document: Document, nodes: Nodes, bind: Bind) -> dict[int, int]:
-    """Give skins to the meshes that hang on joints; return the joint of each mesh."""
-    chosen = {
-        one.node: one
-        for one in _hanging(document, nodes, bind)
-        if len(one.faces) and not vanishes(nodes, one.node) and has_volume(one.to_rig)
+    """Give skins to the meshes of the scene without one; return the joint of each that has one."""
+    hanging = {one.node: one for one in _hanging(document, nodes, bind)}
+    to_rig = {i: one.to_rig for i, one in hanging.items()}
+    if has_volume(bind.world):
+        from_scene = np.linalg.inv(bind.world)
+        unskinned = (i for i in nodes.in_scene() if nodes.raw[i].keys() & {"mesh", "skin"} == {"mesh"})
+        to_rig |= {i: from_scene @ nodes.world[i] for i in unskinned if i not in hanging}
+    to_rig = {
+        i: matrix
+        for i, matrix in sorted(to_rig.items())
+        if draws_mesh(document, nodes, i) and not vanishes(nodes, i) and has_volume(matrix)
     }
-    add_skins(document, nodes, bind, {i: one.to_rig for i, one in chosen.items()})
-    return {nodes.raw[i]["mesh"]: one.joint for i, one in chosen.items()}
+    add_skins(document, nodes, bind, to_rig)
+    return {nodes.raw[i]["mesh"]: hanging[i].joint for i in to_rig if i in hanging}
 
 
 def read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int, Attachment]:

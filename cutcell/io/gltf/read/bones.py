@@ -97,9 +97,8 @@ def _empty(nodes: Nodes) -> set[int]:
         node = nodes.raw[i]
         extensions = node.get("extensions")
         names = extensions if isinstance(extensions, dict) else {}
-        if not any(key in node for key in NOT_EMPTY):
-            if not any(key in names for key in EXTENSIONS_NOT_EMPTY):
-                empty.add(i)
+        if not node.keys() & set(NOT_EMPTY) and not names.keys() & set(EXTENSIONS_NOT_EMPTY):
+            empty.add(i)
     return empty
 
 
@@ -138,8 +137,8 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
     bones.joints.sort()
     if outside and not bones.joints:
         bones.why_none = (
-            f"it has no skin, and the nodes below {listed(outside)} could be bones, but lie outside "
-            "of its mesh. Give the mesh and the armature the same scale and axes, and export again"
+            f"it has no skin, and what could be its bones (below {listed(outside)}) lies outside of "
+            "its mesh. Give the mesh and the armature the same scale and axes, and export again"
         )
     return bones
 

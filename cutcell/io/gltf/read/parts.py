@@ -12,7 +12,6 @@ from ..container import Document
 from ..nodes import Nodes
 from .primitives import draws_triangles, primitives
 
-
 OUTSIDE = "is outside of the scene"
 NO_JOINT = "has no skin and hangs on no joint"
 
@@ -85,14 +84,8 @@ def left_out_warnings(
     alone = [one.name for one in left_out if one.why == NO_JOINT]
     rigid = [one.name for one in attachments if not one.hidden]
     sentences = (
-        (rigid, "without a skin hang on a joint and are not bound; `bind --accessories` binds them"),
-        (alone, "without a skin hang on no joint and are left out; parent them to a joint or skin "
-         "them"),
-        (outside, "outside of the default scene are left out; make their scene the default one to "
-         "read them"),
-    )  # fmt: skip
-    return tuple(
-        f"{'a mesh' if len(names) == 1 else f'{len(names)} meshes'} {what}: {listed(names)}"
-        for names, what in sentences
-        if names
+        (rigid, "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them"),
+        (alone, "have no skin and hang on no joint, and are left out. `bind --accessories` binds them"),
+        (outside, "are outside of the default scene, and are left out. Move them to that scene"),
     )
+    return tuple(f"some meshes ({listed(names)}) {what}" for names, what in sentences if names)

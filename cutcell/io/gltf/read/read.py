@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ....errors import CutcellError, FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
-from ...weights import ReadWeights
+from ...weights import ReadWeights, sum_warnings
 from ..bare import read_bare
 from ..container import Document, read_document
 from ..deform import read_deform
@@ -102,11 +102,13 @@ def read_rig(
     world: NDArray | None = None,
     accessories: bool = False,
     has_bones: bool = False,
+    why_bare: str = "",
 ) -> Rig:
     """Return what a document with plain accessors holds.
 
     `world` is of `read_bind`. Meshes without a skin that hang on joints are bound with the others
-    if `accessories`. In a document without a skin, plain nodes may be joints if `has_bones`.
+    if `accessories`. In a document without a skin, plain nodes may be joints if `has_bones`; else
+    `why_bare` says why it has no joints.
     """
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
@@ -116,10 +118,9 @@ def read_rig(
         skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
         bind = read_bind(document, nodes, skins, world)
     else:
-        bones, why = bind_to_bones(document, nodes) if has_bones else (None, "")
+        bones, why = bind_to_bones(document, nodes) if has_bones else (None, why_bare)
         if bones is None:
-            document.warnings += [why] if why else []
-            return read_bare(document, nodes, path.stem)
+            return read_bare(document, nodes, path.stem, why)
         bind, skinned = bones, _skinned_nodes(nodes)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
     skinned = _skinned_nodes(nodes) if rigid else skinned
@@ -134,6 +135,7 @@ def read_rig(
     skeleton, warnings = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
     attached = read_attachments(document, nodes, bind)
     left_out = left_out_meshes(document, nodes, skinned, attached)
+    warnings += sum_warnings(sums, mesh.faces, stored.named)
     warnings += left_out_warnings(left_out, attached.values())
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
