@@ -11,6 +11,7 @@ import typer
 from ..errors import ParameterError
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
 from .options import (
+    Accessories,
     CorrectionsFile,
     Deform,
     Fresh,
@@ -53,7 +54,7 @@ EPILOG = """Examples:
 
 - `cutcell bind character.glb bound.glb --corrections character.corrections.json`
 
-- `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
+- `cutcell bind body.obj bound.glb --skeleton rigged.fbx`  (the skeleton of another file)
 
 - `cutcell bind statue.obj bound.glb --template biped`  (a skeleton is fitted into the body)
 
@@ -84,6 +85,7 @@ def bind(
     fresh: Fresh = False,
     corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
+    accessories: Accessories = False,
     template: TemplateName = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -112,7 +114,7 @@ def bind(
     corrected = None if corrections is None else Corrections.load(corrections)
     fits = None if template is None else check_template(template)
     check_output(out)
-    loaded, graph = load(rig, skeleton=skeleton), None
+    loaded, graph = load(rig, skeleton, accessories), None
     with naming(rig):
         if fits is not None:
             with progress_bars(quiet) as progress:

@@ -32,7 +32,16 @@ SkeletonFile = Annotated[
     typer.Option(
         "--skeleton",
         metavar="FILE",
-        help="Skeleton (.json) of a mesh; by default the file of the same name next to it.",
+        help="File with the skeleton of a mesh that has no skin: .json, .glb, .gltf, .vrm, .fbx,"
+        " .usd, RigNet's .txt or .npz. Default: the .json of the same name next to the mesh.",
+        rich_help_panel=FILES,
+    ),
+]
+Accessories = Annotated[
+    bool,
+    typer.Option(
+        "--accessories",
+        help="Also bind meshes that have no skin, such as a sword that hangs on a joint.",
         rich_help_panel=FILES,
     ),
 ]

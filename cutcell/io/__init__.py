@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import CutcellError, FileError
+from ..errors import CutcellError, FileError, SkeletonError
 from ..rig import Rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
@@ -22,6 +22,7 @@ from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
 from .scenes.fbx import read_fbx
 from .scenes.usd import USD, read_usd
+from .skeletons import with_skeleton
 
 __all__ = ["load", "save"]
 
@@ -37,7 +38,11 @@ AVATAR = ("VRM", "VRMC_vrm")
 """Extensions of a document that make it a VRM."""
 
 
-def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None = None) -> Rig:
+def load(
+    path: str | os.PathLike[str],
+    skeleton: str | os.PathLike[str] | None = None,
+    accessories: bool = False,
+) -> Rig:
     """Load a rig.
 
     Parameters
@@ -48,7 +53,11 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
         without a skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken
         from each.
     skeleton : path, optional
-        The skeleton of a mesh, where it does not stand beside it under the mesh's name.
+        A file with the skeleton of a mesh that has no skin: JSON, GLB, glTF, VRM, FBX, USD,
+        RigNet's ``.txt`` or Articulation-XL's ``.npz``.
+    accessories : bool
+        Whether meshes of a glTF, FBX or USD file that have no skin, such as a sword on a joint,
+        become part of the rig's mesh, to be bound with it.
 
     Returns
     -------
@@ -60,30 +69,38 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
     FileError
         No such file, not what its name says, or damaged.
     MeshError, SkeletonError, WeightsError
-        What the file holds cannot be used. Every message names the file.
+        What the file holds cannot be used, or it has a skeleton besides the one that is given.
+        Every message names the file.
     """
     path = Path(path)
     with naming(path):
-        return _load(path, None if skeleton is None else Path(skeleton))
+        rig = _load(path, skeleton is not None, accessories)
+        if skeleton is None:
+            return rig
+        if len(rig.skeleton.joints):
+            raise SkeletonError(
+                f"has a skeleton of its own, of {len(rig.skeleton.joints)} joints; a skeleton file "
+                "is for a mesh without one"
+            )
+        return with_skeleton(rig, Path(skeleton))
 
 
-def _load(path: Path, skeleton: Path | None) -> Rig:
+def _load(path: Path, bare: bool, accessories: bool) -> Rig:
+    """Load a rig; if `bare`, without a skeleton that is no part of a skin."""
     kind = path.suffix.lower()
-    if skeleton is not None and kind not in MESHES:
-        raise FileError(f"has a skeleton of its own; only {', '.join(MESHES)} take one beside")
     if kind == ".npz":
         return read_articulation(path)
     if kind == ".txt":
         return read_rignet(path)
     if kind in MESHES:
-        rig = rig_file(path) if kind == ".obj" and skeleton is None else None
-        return read_rignet(rig) if rig else read_soup(path, skeleton)
+        rig = rig_file(path) if kind == ".obj" and not bare else None
+        return read_rignet(rig) if rig else read_soup(path, bare)
     if kind == ".fbx":
-        return read_fbx(path)
+        return read_fbx(path, accessories)
     if kind in USD:
-        return read_usd(path)
+        return read_usd(path, accessories)
     if kind in GLTF or read_bytes(path)[:4] == MAGIC:
-        return read_gltf(path)
+        return read_gltf(path, accessories, bare)
     if kind == ".json":
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
     raise FileError(f'"{kind}" cannot be read; give {READABLE} (from Blender: export as GLB)')

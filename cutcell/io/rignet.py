@@ -81,6 +81,11 @@ def read_rignet(path: Path) -> Rig:
         )
 
 
+def read_rignet_skeleton(path: Path) -> Skeleton:
+    """Read the skeleton of a rig file (``.txt``), whose mesh need not exist."""
+    return _skeleton(_parse(read_text(path)))
+
+
 def _parse(text: str) -> _Text:
     contents = _Text()
     for number, tokens in numbered_words(text):

@@ -38,6 +38,8 @@ def read(data):
     }
     names: list[str] = []
     at: list[int] = []
+    blended: list[str] = []
+    notes: list[str] = []
     palette = FbxPalette()
     for mesh in kept(scene.meshes):
         places = kept(mesh.instances)
@@ -46,6 +48,15 @@ def read(data):
         corners, polygons = triangles(mesh)
         shape = geometry(mesh, corners)
         skins = kept(mesh.skin_deformers)
+        name = places[0].name or mesh.name
+        if skins and len(places) > 1:
+            others = ", ".join(node.name for node in places[1:][:6])
+            notes.append(
+                f'the skinned mesh "{name}" is read once, as "{name}"; its other instances '
+                f"({others}) are left out. Duplicate the mesh data of those to read them"
+            )
+        if len(kept(mesh.blend_deformers)):
+            blended.append(name)
         # A skin holds for one place of a mesh; other meshes may stand anywhere.
         for node in places[:1] if skins else places:
             k = len(names)
@@ -59,6 +70,7 @@ def read(data):
                 skin = influences(skins, place)
                 arrays |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
     arrays |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
+    arrays |= {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
     return arrays | palette.arrays() | clips(scene, place)
 
 

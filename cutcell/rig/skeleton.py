@@ -108,9 +108,10 @@ class Skeleton(Summarized):
         """
         if len(self.joints) == 0:
             raise SkeletonError(
-                "the rig has no skeleton; export the mesh together with its armature, or save it "
-                "as OBJ or PLY and put a skeleton beside it in a JSON file of the same name, for "
-                'example {"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
+                "the rig has no skeleton; export the mesh together with its armature, fit a "
+                "skeleton (`--template`), give the file of one (`--skeleton`), or put a skeleton "
+                "beside it in a JSON file of the same name, for example "
+                '{"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
                 '{"name": "tip", "position": [0, 1, 0], "parent": "root"}]}'
             )
 

@@ -22,10 +22,10 @@ logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it writes trac
 MESHES = (".obj", ".ply", ".stl", ".off")
 
 
-def read_soup(path: Path, skeleton: Path | None) -> Rig:
-    """Load a mesh and its skeleton, if it has one; the mesh comes without weights."""
+def read_soup(path: Path, bare: bool = False) -> Rig:
+    """Load a mesh and the skeleton beside it, if there is one; the mesh comes without weights."""
     mesh, surfaces = read_mesh(path)
-    skeleton_path = skeleton or skeleton_file(path)
+    skeleton_path = None if bare else skeleton_file(path)
     if skeleton_path is None:
         return Rig(mesh, Skeleton([], []), name=path.stem, source=surfaces)  # type: ignore[arg-type]
     joints, says_deform = read_skeleton_json(skeleton_path)

@@ -32,9 +32,11 @@ MAX_INFLUENCES = 64
 """Of one vertex, the strongest; sixteen sets of glTF hold them."""
 
 
-def scene_document(scene: Mapping[str, NDArray], path: Path, generator: str) -> Document:
+def scene_document(
+    scene: Mapping[str, NDArray], path: Path, generator: str, needs_mesh: bool = True
+) -> Document:
     """Return a scene as a document."""
-    if not len(scene["mesh_names"]):
+    if needs_mesh and not len(scene["mesh_names"]):
         raise FileError("has no mesh")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
     if len(bad):

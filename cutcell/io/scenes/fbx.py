@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import FileError
 from ...isolated.run import WorkFailedError, run_isolated
 from ...rig import Rig
+from ...runtime.display import listed
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
 from .document import scene_document
@@ -25,8 +28,16 @@ LOST = (
 )
 
 
-def read_fbx(path: Path) -> Rig:
+def read_fbx(path: Path, accessories: bool = False) -> Rig:
     """Load an FBX file; see `cutcell.load`."""
+    scene = fbx_scene(path)
+    document = scene_document(scene, path, "cutcell, from FBX")
+    document.warnings += [LOST, *map(str, scene.get("notes", ()))]
+    return read_rig(document, path, scene_world(scene), accessories, why_bare=_why_bare(scene))
+
+
+def fbx_scene(path: Path) -> Mapping[str, NDArray]:
+    """Return the arrays of an FBX file; see `document`."""
     data = read_bytes(path)
     if not data.startswith(BINARY) and b"FBX" not in data[:4096]:
         raise FileError("is not an FBX file: neither binary nor text in its first lines says so")
@@ -34,9 +45,17 @@ def read_fbx(path: Path) -> Rig:
     memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     try:
         job = {"data": np.frombuffer(data, np.uint8)}
-        scene = run_isolated("fbx", job, seconds, "the FBX reader", memory)
+        return run_isolated("fbx", job, seconds, "the FBX reader", memory)
     except WorkFailedError as e:
         raise FileError(f"cannot be read as FBX: {e}") from None
-    document = scene_document(scene, path, "cutcell, from FBX")
-    document.warnings.append(LOST)
-    return read_rig(document, path, scene_world(scene))
+
+
+def _why_bare(scene: Mapping[str, NDArray]) -> str:
+    """Return why a scene has no joints, if blend shapes move its meshes."""
+    if not len(scene["blended"]):
+        return ""
+    names = listed(scene["blended"].tolist())
+    return (
+        f"it has no bones: only blend shapes, which are not read, move its meshes ({names}). Give "
+        "it a skeleton from another file, or fit one"
+    )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import FileError
 from ...isolated.run import WorkFailedError, run_isolated
@@ -23,15 +25,20 @@ LOST = (
 )
 
 
-def read_usd(path: Path) -> Rig:
+def read_usd(path: Path, accessories: bool = False) -> Rig:
     """Load a USD file; see `cutcell.load`."""
+    scene = usd_scene(path)
+    document = scene_document(scene, path, "cutcell, from USD")
+    document.warnings.append(LOST)
+    return read_rig(document, path, scene_world(scene), accessories)
+
+
+def usd_scene(path: Path) -> Mapping[str, NDArray]:
+    """Return the arrays of a USD file; see `document`."""
     read_bytes(path)  # says what it says of every file: not there, a folder, empty
     try:
-        scene = run_isolated(
+        return run_isolated(
             "usd", {"path": np.array(str(path.resolve()))}, SECONDS, "the USD reader", MEMORY
         )
     except WorkFailedError as e:
         raise FileError(f"cannot be read as USD: {e}") from None
-    document = scene_document(scene, path, "cutcell, from USD")
-    document.warnings.append(LOST)
-    return read_rig(document, path, scene_world(scene))

@@ -56,7 +56,9 @@ def bind_accessories(document: Document, nodes: Nodes, bind: Bind) -> dict[int, 
     to_rig = {i: one.to_rig for i, one in hanging.items()}
     if has_volume(bind.world):
         from_scene = np.linalg.inv(bind.world)
-        unskinned = (i for i in nodes.in_scene() if nodes.raw[i].keys() & {"mesh", "skin"} == {"mesh"})
+        unskinned = (
+            i for i in nodes.in_scene() if nodes.raw[i].keys() & {"mesh", "skin"} == {"mesh"}
+        )
         to_rig |= {i: from_scene @ nodes.world[i] for i in unskinned if i not in hanging}
     to_rig = {
         i: matrix

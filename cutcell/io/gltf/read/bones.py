@@ -137,8 +137,8 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
     bones.joints.sort()
     if outside and not bones.joints:
         bones.why_none = (
-            f"it has no skin, and what could be its bones (below {listed(outside)}) lies outside of "
-            "its mesh. Give the mesh and the armature the same scale and axes, and export again"
+            f"it has no skin, and what could be its bones (below {listed(outside)}) lies outside "
+            "of its mesh. Give the mesh and the armature the same scale and axes, and export again"
         )
     return bones
 

@@ -84,8 +84,14 @@ def left_out_warnings(
     alone = [one.name for one in left_out if one.why == NO_JOINT]
     rigid = [one.name for one in attachments if not one.hidden]
     sentences = (
-        (rigid, "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them"),
-        (alone, "have no skin and hang on no joint, and are left out. `bind --accessories` binds them"),
+        (
+            rigid,
+            "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them",
+        ),
+        (
+            alone,
+            "have no skin and hang on no joint, and are left out. `bind --accessories` binds them",
+        ),
         (outside, "are outside of the default scene, and are left out. Move them to that scene"),
     )
     return tuple(f"some meshes ({listed(names)}) {what}" for names, what in sentences if names)

@@ -1,0 +1,113 @@
+"""The skeleton of one file for the mesh of another."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FileError, SkeletonError
+from ..rig import Rig, Skeleton
+from .articulation import read_articulation
+from .deforming import with_deform
+from .files import naming
+from .gltf.container import Document
+from .gltf.deform import read_deform
+from .gltf.nodes import Nodes
+from .gltf.read.bones import find_bones
+from .gltf.read.read import malformed, plain_document
+from .gltf.read.skins import Bind, read_bind, read_skeleton
+from .meshes.skeleton_json import read_skeleton_json
+from .rignet import read_rignet_skeleton
+from .scenes.document import scene_document
+from .scenes.fbx import fbx_scene
+from .scenes.joints import scene_world
+from .scenes.usd import USD, usd_scene
+
+KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
+MARGIN = 0.1
+"""Of the diagonal of a mesh's bounding box: joints may lie this far outside of the box."""
+
+
+def with_skeleton(rig: Rig, path: Path) -> Rig:
+    """Return a mesh without joints with the skeleton of a file.
+
+    Joints have their places in the scene of that file; or, if more of them lie in the mesh then,
+    those in the space of its own mesh, as programs differ in units and axes.
+    """
+    with naming(path):
+        skeleton, world, stored = _read(path)
+        if not len(skeleton.joints):
+            raise SkeletonError(
+                "has no joints: neither a skin, nor nodes that are bones. Give a file with an "
+                "armature"
+            )
+    choices = _in_scene(skeleton, world), skeleton
+    fits = [_share_inside(rig, choice) for choice in choices]
+    skeleton = choices[int(np.argmax(fits))]
+    warnings: list[str] = []
+    if max(fits) < 0.5:
+        warnings.append(
+            f"{1 - max(fits):.0%} of the joints of {path.name} lie outside of the mesh. Give the "
+            "two files the same scale, axes and origin"
+        )
+    skeleton, notes = with_deform(rig.mesh, skeleton, None, stored)
+    return replace(rig, skeleton=skeleton, warnings=(*rig.warnings, *warnings, *notes))
+
+
+def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
+    """Return a skeleton moved by a matrix (4, 4)."""
+    joints, turned = skeleton.joints @ world[:3, :3].T + world[:3, 3], skeleton.orientations
+    if turned is not None:
+        left, _, right = np.linalg.svd(world[:3, :3])
+        turned = left @ right @ turned
+    return replace(skeleton, joints=joints, orientations=turned)
+
+
+def _share_inside(rig: Rig, skeleton: Skeleton) -> float:
+    """Return the share of joints that lie in the bounding box of a mesh, or close to it."""
+    low, high = rig.mesh.bounds
+    margin = MARGIN * np.linalg.norm(high - low)
+    inside = (skeleton.joints >= low - margin) & (skeleton.joints <= high + margin)
+    return float(inside.all(axis=1).mean())
+
+
+def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
+    """Return a skeleton, the matrix to its scene, and which joints deform, if the file says so."""
+    kind, world = path.suffix.lower(), np.eye(4)
+    if kind == ".json":
+        skeleton, says_deform = read_skeleton_json(path)
+        return skeleton, world, skeleton.deform.astype(np.int8) if says_deform else None
+    if kind == ".npz":
+        return read_articulation(path).skeleton, world, None
+    if kind == ".txt":
+        return read_rignet_skeleton(path), world, None
+    if kind in (".glb", ".gltf", ".vrm"):
+        with malformed():
+            return _of_document(plain_document(path))
+    if kind == ".fbx" or kind in USD:
+        scene = fbx_scene(path) if kind == ".fbx" else usd_scene(path)
+        document = scene_document(scene, path, "cutcell", needs_mesh=False)
+        bones = np.flatnonzero(scene["node_bones"]).tolist()
+        return _of_document(document, bones, scene_world(scene))
+    raise FileError(f'no skeleton can be read from "{kind}"; give {KINDS}')
+
+
+def _of_document(
+    document: Document, bones: list[int] | None = None, world: NDArray | None = None
+) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
+    """Return what `_read` does, of the skins of a document, else of its bones."""
+    nodes = Nodes(document)
+    skins = list(range(len(document.items("skins"))))
+    if skins:
+        bind = read_bind(document, nodes, skins, world)
+    else:
+        joints = find_bones(document, nodes).joints if bones is None else bones
+        joints = [i for i in joints if np.linalg.matrix_rank(nodes.world[i, :3, :3]) == 3]
+        bind = Bind(nodes=joints, inverse=[np.linalg.inv(nodes.world[i]) for i in joints])
+    if not bind.nodes:
+        return Skeleton([], []), bind.world, None  # type: ignore[arg-type]
+    stored = read_deform(document, bind.skins, len(bind.nodes))
+    return read_skeleton(nodes, bind), bind.world, stored
