@@ -122,7 +122,8 @@ def _bounds(
 
 def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
     """Return why a document that moves has no joints; an empty text if nothing moves in it."""
-    moved, morphed = set(), set()
+    moved: set[int] = set()
+    morphed: set[int] = set()
     for clip in document.items("animations"):
         channels = clip.get("channels")
         for channel in channels if isinstance(channels, list) else ():
