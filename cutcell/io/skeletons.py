@@ -29,6 +29,10 @@ from .scenes.usd import USD, usd_scene
 KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
 MARGIN = 0.1
 """Of the diagonal of a mesh's bounding box: joints may lie this far outside of the box."""
+SIMILAR = 0.5
+"""The scene's places are chosen unless those in the bind space fit better than by this factor."""
+MIN_FIT = 0.2
+"""Below it the user is warned."""
 
 
 def with_skeleton(rig: Rig, path: Path) -> Rig:
@@ -45,13 +49,14 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
                 "armature"
             )
     choices = _in_scene(skeleton, world), skeleton
-    fits = [_share_inside(rig, choice) for choice in choices]
-    skeleton = choices[int(np.argmax(fits))]
+    fits = [_fit(rig, choice) for choice in choices]
+    is_in_scene = fits[0] >= SIMILAR * fits[1]
+    skeleton = choices[0 if is_in_scene else 1]
     warnings: list[str] = []
-    if max(fits) < 0.5:
+    if fits[0 if is_in_scene else 1] < MIN_FIT:
         warnings.append(
-            f"{1 - max(fits):.0%} of the joints of {path.name} lie outside of the mesh. Give the "
-            "two files the same scale, axes and origin"
+            f"the joints of {path.name} do not fit the mesh: {_extent(skeleton.joints)} for "
+            f"{_extent(rig.mesh.vertices)}. Give the two files the same scale, axes and origin"
         )
     skeleton, notes = with_deform(rig.mesh, skeleton, None, stored)
     return replace(rig, skeleton=skeleton, warnings=(*rig.warnings, *warnings, *notes))
@@ -66,12 +71,21 @@ def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
     return replace(skeleton, joints=joints, orientations=turned)
 
 
-def _share_inside(rig: Rig, skeleton: Skeleton) -> float:
-    """Return the share of joints that lie in the bounding box of a mesh, or close to it."""
+def _fit(rig: Rig, skeleton: Skeleton) -> float:
+    """Return how well joints fit a mesh: the share near it, times the ratio of sizes below one."""
     low, high = rig.mesh.bounds
-    margin = MARGIN * np.linalg.norm(high - low)
+    size, extent = np.linalg.norm(high - low), np.linalg.norm(np.ptp(skeleton.joints, axis=0))
+    margin = MARGIN * size
     inside = (skeleton.joints >= low - margin) & (skeleton.joints <= high + margin)
-    return float(inside.all(axis=1).mean())
+    ratio = 1.0 if len(skeleton.joints) == 1 else min(extent, size) / max(extent, size)
+    return float(inside.all(axis=1).mean() * ratio)
+
+
+def _extent(points: NDArray[np.float64]) -> str:
+    """Return the box of points (n, 3) in words."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    corners = (" ".join(f"{x:.3g}" for x in corner) for corner in (low, high))
+    return " to ".join(f"({corner})" for corner in corners)
 
 
 def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
@@ -100,13 +114,16 @@ def _of_document(
 ) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
     """Return what `_read` does, of the skins of a document, else of its bones."""
     nodes = Nodes(document)
-    skins = list(range(len(document.items("skins"))))
+    skins, bind = list(range(len(document.items("skins")))), Bind()
     if skins:
         bind = read_bind(document, nodes, skins, world)
     else:
         joints = find_bones(document, nodes).joints if bones is None else bones
         joints = [i for i in joints if np.linalg.matrix_rank(nodes.world[i, :3, :3]) == 3]
-        bind = Bind(nodes=joints, inverse=[np.linalg.inv(nodes.world[i]) for i in joints])
+        if bones is not None:  # of a scene, whose root leads from the file's units and axes
+            bind.world = nodes.world[0]
+        bind.nodes = joints
+        bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in joints]
     if not bind.nodes:
         return Skeleton([], []), bind.world, None  # type: ignore[arg-type]
     stored = read_deform(document, bind.skins, len(bind.nodes))

@@ -81,6 +81,13 @@ class Scene:
                 first = self.add_joints(query)
                 for target in binding.GetSkinningTargets():
                     self.bound[target.GetPrim().GetPath()] = (target, query, first)
+        if len(self.nodes) == 1:  # no mesh follows a skeleton
+            for prim in self.stage.Traverse(everything):
+                query = prim.IsA(UsdSkel.Skeleton) and self.cache.GetSkelQuery(
+                    UsdSkel.Skeleton(prim)
+                )
+                if query:
+                    self.add_joints(query)
 
     def add_joints(self, query):
         """Add a skeleton's joints; return the number of the first node."""

@@ -99,7 +99,7 @@ def test_the_second_of_two_meshes_and_instances_stay_in_place(loaded, tmp_path):
     builder.node(mesh=0, name="instance", translation=[2, 1, 0], scale=[-1, 1, 1])
     rig = loaded(builder)
     assert [part.name for part in rig.parts] == ["body", "instance"]
-    assert_allclose(rig.mesh.vertices[:12], COLUMN + [2, 0, 0], atol=1e-6)
+    assert_allclose(rig.mesh.vertices[:12], COLUMN + np.array([2, 0, 0]), atol=1e-6)
     assert_allclose(rig.mesh.vertices[12:], COLUMN * [-1, 1, 1] + [2, 1, 0], atol=1e-6)
     cutcell.save(tmp_path / "out.glb", weighted(rig))
     assert_allclose(scene_points(tmp_path / "out.glb"), rig.mesh.vertices, atol=1e-5)
@@ -150,7 +150,7 @@ def test_meshes_that_all_hang_on_bones_are_bound(loaded):
     assert [part.name for part in rig.parts] == ["lower", "upper"]
     assert rig.attachments == ()
     assert len(rig.skeleton.joints) >= 3
-    assert_allclose(rig.mesh.vertices[12:], COLUMN + [0.5, 0.9, 0.5], atol=1e-6)
+    assert_allclose(rig.mesh.vertices[12:], COLUMN + np.array([0.5, 0.9, 0.5]), atol=1e-6)
 
 
 def groups():
@@ -248,7 +248,7 @@ def test_accessories_are_bound_when_asked_for(tmp_path):
     assert rig.attachments == ()
     (sword,) = plain.attachments
     assert_allclose(rig.mesh.vertices[12:24], sword.mesh.vertices, atol=1e-6)
-    assert_allclose(rig.mesh.vertices[24:], COLUMN + [0, 2, 0], atol=1e-6)
+    assert_allclose(rig.mesh.vertices[24:], COLUMN + np.array([0, 2, 0]), atol=1e-6)
     assert_array_equal(rig.weights[:12], plain.weights)
     assert_array_equal(rig.weights[12:24], np.tile([0, 1], (12, 1)))  # as the file moves it
     assert rig.allowed is None
