@@ -25,7 +25,7 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
     A skin names the joints that hold a vertex. The other bones of the same tree (fingertips,
     roots, helpers) join the first mesh that is bound to it, where they are at rest relative to
     the nearest bone above that it knows. In a scene without any weights each mesh that is
-    below no bone is bound to all bones in their current position.
+    below no bone, or each if all are below one, is bound to all bones in their current position.
     """
     parents = scene["node_parents"].tolist()
     world = _worlds(scene["node_transforms"], parents)
@@ -95,12 +95,13 @@ def _unbound(
 ) -> dict[int, SceneSkin]:
     inverses = [(bone, *_inverse(world[bone])) for bone in bones]
     able = [(bone, inverse) for bone, inverse, solvable in inverses if solvable]
+    places = scene["mesh_nodes"].tolist()
+    free = [k for k, node in enumerate(places) if not set(_above(node, parents)) & set(bones)]
     skins = {}
-    for k, node in enumerate(scene["mesh_nodes"].tolist()):
-        if able and not set(_above(node, parents)) & set(bones):
-            place = world[node] @ scene[f"mesh_{k}_place"]
-            inverse = np.array([matrix @ place for _, matrix in able])
-            skins[k] = SceneSkin([bone for bone, _ in able], inverse)
+    for k in (free or range(len(places))) if able else ():
+        place = world[places[k]] @ scene[f"mesh_{k}_place"]
+        inverse = np.array([matrix @ place for _, matrix in able])
+        skins[k] = SceneSkin([bone for bone, _ in able], inverse)
     return skins
 
 

@@ -13,6 +13,7 @@ from tests.cutcell.io.fbx_builder import (
     MESH,
     binary,
     column_scene,
+    model,
     old_text,
     prop,
     record,
@@ -260,3 +261,71 @@ class TestDamage:
             except cutcell.CutcellError as error:
                 told = str(error)
             assert told.startswith("column.fbx: ")
+
+
+def changed(scene, keep=lambda one: True, objects=(), links=()):
+    """Return a scene with other objects and connections between those that are left."""
+    head, before, connections = scene
+    objects = [*(one for one in before[2] if keep(one)), *objects]
+    numbers = {0, *(one[1][0] for one in objects)}
+    links = [*connections[2], *(record("C", "OO", a, b) for a, b in links)]
+    links = [one for one in links if {one[1][1], one[1][2]} <= numbers]
+    return [head, record("Objects", children=objects), record("Connections", children=links)]
+
+
+def test_other_instances_of_a_skinned_mesh_are_told(load):
+    again = model(210, "again", "Mesh", [vector("Lcl Translation", (5, 0, 0))])
+    rig = load(text(changed(column_scene(), objects=[again], links=[(210, 0), (100, 210)])))
+    check(rig)
+    assert sum("again" in warning for warning in rig.warnings) == 1
+
+
+def test_a_mesh_that_only_blend_shapes_move_says_so(load):
+    shape = record(
+        "Geometry", 412, "Geometry::smile", "Shape",
+        children=[record("Indexes", np.array([0], np.int32)), record("Vertices", np.ones(3)),
+                  record("Normals", np.zeros(3))],
+    )  # fmt: skip
+    blend = [
+        record("Deformer", 410, "Deformer::face", "BlendShape"),
+        record("Deformer", 411, "SubDeformer::smile", "BlendShapeChannel"),
+        shape,
+    ]
+    unmoved = {"Deformer", "NodeAttribute"}
+    scene = changed(
+        column_scene(curves=False),
+        lambda one: one[0] not in unmoved and one[1][0] not in (300, 301, 302),
+        blend,
+        [(410, 100), (411, 410), (412, 411)],
+    )
+    rig = load(text(scene))
+    assert len(rig.skeleton.joints) == 0
+    assert sum("blend shapes" in w and "body" in w for w in rig.warnings) == 1
+    with pytest.raises(cutcell.SkeletonError, match="blend shapes"):
+        cutcell.bind(rig)
+
+
+def test_meshes_that_all_hang_on_bones_are_bound(load):
+    scene = changed(column_scene(), lambda one: one[0] != "Deformer")
+    links = [record("C", "OO", MESH, 301) if c[1][1:3] == (MESH, 0) else c for c in scene[2][2]]
+    rig = load(text([*scene[:2], record("Connections", children=links)]))
+    assert set(rig.skeleton.names) == {"root", "tip", "tip_end"}
+    assert rig.weights is None
+    assert rig.attachments == ()
+
+
+def test_an_accessory_is_bound_when_asked_for(tmp_path):
+    corners = FACES.copy()
+    corners[:, -1] = ~corners[:, -1]
+    sword = record(
+        "Geometry", 101, "Geometry::sword", "Mesh",
+        children=[record("Vertices", COLUMN.astype(float).ravel()),
+                  record("PolygonVertexIndex", corners.ravel().astype(np.int32))],
+    )  # fmt: skip
+    objects = [sword, model(210, "sword", "Mesh", [vector("Lcl Translation", (2, 0, 0))])]
+    scene = changed(column_scene(), objects=objects, links=[(210, 301), (101, 210)])
+    (tmp_path / "a.fbx").write_bytes(text(scene))
+    assert [one.name for one in cutcell.load(tmp_path / "a.fbx").attachments] == ["sword"]
+    rig = cutcell.load(tmp_path / "a.fbx", accessories=True)
+    assert [part.name for part in rig.parts] == ["body", "sword"]
+    assert_allclose(rig.mesh.vertices[12:], COLUMN + REST[1] + np.array([2, 0, 0]), atol=1e-6)

@@ -223,7 +223,7 @@ def test_why_a_file_has_no_joints(loaded, make, word):
 
 
 def with_accessories():
-    """Return the column with a sword on the tip, a crown beside it, and a third in another scene."""
+    """Return the column with a sword on the tip, a crown beside it, a mesh in another scene."""
     builder = column()
     body(builder, 1, "sword", translation=[1, 0, 0], rotation=[0, 0.6, 0, 0.8])
     body(builder, None, "crown", translation=[0, 2, 0])
