@@ -10,6 +10,7 @@ import cutcell
 from cutcell.io import SAVED
 from cutcell.io.materials.transfer import read_materials
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, column
 
 
 def test_saves_what_the_library_computes(run, bar, tmp_path):
@@ -196,6 +197,21 @@ def test_a_mesh_without_a_skeleton_is_refused_by_name(run, tmp_path):
     told = refused(run("bind", path, tmp_path / "out.glb"))
     assert told.startswith("error: alone.obj: the rig has no skeleton; export the mesh")
     assert not (tmp_path / "out.glb").exists()
+
+
+def test_the_skeleton_of_another_file_and_accessories(run, tmp_path):
+    builder = column()
+    sword = builder.mesh({"POSITION": builder.positions(COLUMN)})
+    builder.node(1, mesh=sword, name="sword", translation=[2, 0, 0])
+    path, out = builder.save(tmp_path / "in.glb"), tmp_path / "out.glb"
+    result = run("bind", path, out, "-r", 8, "--accessories")
+    assert result.exit_code == 0
+    assert [part.name for part in cutcell.load(out).parts] == ["body", "sword"]
+    assert "sword" in run("bind", path, out, "-r", 8).stderr
+    assert "2 joints" in refused(run("bind", path, out, "--skeleton", path))
+    alone = write_obj(tmp_path / "alone.obj")
+    assert run("bind", alone, out, "-r", 8, "--skeleton", path).exit_code == 0
+    assert cutcell.load(out).skeleton.names == ("root", "tip")
 
 
 def test_the_mesh_that_was_read_is_left_as_it_is(run, bar, tmp_path):

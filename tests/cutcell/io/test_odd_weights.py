@@ -85,3 +85,61 @@ def test_large_weights_do_not_overflow(tmp_path, most):
     for name in ("heavy.glb", "heavy.npz", "heavy.txt"):
         cutcell.save(tmp_path / name, rig.with_weights(heavy))
         assert_allclose(cutcell.load(tmp_path / name).weights, rig.weights, atol=1e-7)
+
+
+def unequal(rig):
+    """Return rows of which two sum to zero, three to a half, and one to one but for rounding."""
+    weights = np.array(rig.weights)
+    weights[[0, 4]] = 0
+    weights[[1, 2, 3]] *= 0.5
+    weights[5] *= 1 + 5e-4
+    return weights
+
+
+def glb_sums(path):
+    shares = np.zeros((12, 4), "f4")
+    shares[:, :2] = unequal(small_rig())
+    builder = column()
+    attributes = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    joints = np.tile(np.array([0, 1, 0, 0], "u1"), (12, 1))
+    attributes |= {"JOINTS_0": builder.accessor(joints), "WEIGHTS_0": builder.accessor(shares)}
+    return builder.save(path)
+
+
+def txt_sums(path):
+    cutcell.save(path, small_rig())
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("skin")]
+    for i, row in enumerate(unequal(small_rig())):
+        lines.append(f"skin {i} root {row[0]} tip {row[1]}")
+    path.write_text("\n".join(lines))
+    return path
+
+
+def npz_sums(path):
+    cutcell.save(path, small_rig())
+    with np.load(path) as stored:
+        arrays = dict(stored)
+    weights = unequal(small_rig())
+    rows, columns = np.nonzero(weights)
+    arrays |= {"skinning_weights_row": rows, "skinning_weights_col": columns}
+    np.savez(path, **arrays | {"skinning_weights_value": weights[rows, columns]})
+    return path
+
+
+@pytest.mark.parametrize(
+    ("make", "name", "mesh"),
+    [
+        (glb_sums, "rig.glb", "body"),
+        (txt_sums, "rig.txt", "rig"),
+        (npz_sums, "rig.npz", "rig"),
+    ],
+)
+def test_rows_that_do_not_sum_to_one_are_counted(tmp_path, make, name, mesh):
+    rig = cutcell.load(make(tmp_path / name))
+    empty, off = rig.warnings
+    assert empty.startswith("2 of 12")
+    assert f"{mesh}: 2" in empty
+    assert off.startswith("3 of 12")
+    assert f"{mesh}: 3" in off
+    sums = rig.weights.sum(axis=1)
+    assert_allclose(sums, np.where(np.isin(np.arange(12), [0, 4]), 0, 1))
