@@ -145,7 +145,7 @@ def test_halves_in_the_names_of_a_rig_are_saved_as_whole(tmp_path, end):
     cutcell.save(path, rig)
     again = cutcell.load(path)
     assert again.skeleton.names == ("a�b", "😀")
-    assert again.warnings == ()
+    assert not any("surrogate" in warning for warning in again.warnings)
     assert_allclose(again.weights, rig.weights, atol=1e-7)
     if end == ".glb":
         check_valid(path)

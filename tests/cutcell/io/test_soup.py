@@ -144,9 +144,6 @@ def test_other_kinds_of_files(tmp_path):
     (tmp_path / "a.json").write_text("{}")
     with pytest.raises(F, match=r"a\.json: is not a mesh; give the mesh"):
         cutcell.load(tmp_path / "a.json")
-    (tmp_path / "a.glb").write_text("{}")
-    with pytest.raises(F, match=r"a\.glb: has a skeleton of its own"):
-        cutcell.load(tmp_path / "a.glb", skeleton=tmp_path / "a.json")
 
 
 def test_saving_needs_a_known_ending_and_a_folder(tmp_path):

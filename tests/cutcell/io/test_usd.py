@@ -154,8 +154,16 @@ def test_saved_as_a_glb_that_loads_again(load, tmp_path):
         cutcell.save(tmp_path / "out.usda", rig)
 
 
-def test_a_mesh_without_a_skeleton_loads(load):
+def test_meshes_that_follow_no_skeleton_are_bound_to_its_joints(load):
     rig = load(text().replace("rel skel:skeleton", "rel other:skeleton"))
+    assert rig.skeleton.names == ("root", "tip")
+    assert_allclose(rig.skeleton.joints, REST, atol=1e-6)
+    assert rig.weights is None
+
+
+def test_a_mesh_without_a_skeleton_loads(load):
+    without = text().replace("rel skel:skeleton", "rel other:skeleton")
+    rig = load(without.replace("def Skeleton", "def Scope"))
     assert rig.skeleton.joints.shape == (0, 3)
     assert {part.name for part in rig.parts} == {"body", "floor"}
 
