@@ -14,7 +14,7 @@ from io import BytesIO
 from typing import IO, TYPE_CHECKING, Any
 
 from cutcell.errors import CutcellError
-from cutcell.runtime.subprocesses import python_environment
+from cutcell.runtime.subprocesses import end_first_without_memory, python_environment
 
 from .camera import Camera
 from .description import Description, in_view
@@ -128,6 +128,7 @@ def main() -> None:
     """Draw what the input asks for, until it ends."""
     import psutil
 
+    end_first_without_memory()
     studios: dict[Any, list[Scene]] = {}
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     while True:

@@ -188,7 +188,7 @@ def show_rig(
         chosen()
         _correct(session, arrival.get("corrections", ""))
         _choose_joints(session, arrival)
-        if state.bare:
+        if not state.is_panel_usable:
             state.panel = "graph"
     view.camera = framing(bounds_of(state), 1.2)
     view.at_home = True

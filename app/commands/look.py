@@ -48,7 +48,7 @@ def pick_vertex(session: Session, vertex: int | None) -> None:
     """Choose a vertex to look at closely; None for no more."""
     state = session.state
     count = 0 if state.rig is None or state.bare else len(state.rig.mesh.vertices)
-    if vertex is not None and vertex >= count:
+    if vertex is not None and not 0 <= vertex < count:
         return
     state.param.update(vertex=vertex, node=None)
 

@@ -49,7 +49,9 @@ def read(rig: Rig, progress: Progress) -> Textures | None:
         progress("materials", 0.0)
 
     try:
-        pixels, problems = in_process(decoded, *inputs, check=require_current, ended=ENDED)
+        pixels, problems = in_process(
+            decoded, *inputs, check=require_current, ended=ENDED, limit=MAX_SECONDS
+        )
     except FileError as error:
         pixels, problems = none_decoded(materials.layers, str(error))
     return as_textures(rig, materials, pixels, problems)

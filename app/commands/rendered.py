@@ -6,6 +6,7 @@ from typing import Any
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.frames import Frame, FrameProcess
+from cutcell_viewers.tiles import Tile
 
 from .export import Seen
 from .session import Session
@@ -53,13 +54,10 @@ def draw(session: Session, message: dict[str, Any]) -> None:
 
 def _frame_options(message: dict[str, Any]) -> dict[str, Any]:
     """Return the camera and the sizes of a frame, within the limits of the server."""
-    width, height = message["size"]
-    ratio = min(float(message["ratio"]), MAX_SIDE / max(width, height, 1))
-    tiles = [
-        tuple(max(round(ratio * side), 0 if k < 2 else 1) for k, side in enumerate(tile))
-        for tile in message["tiles"][:MAX_TILES]
-    ]
+    width, height = (float(side) for side in message["size"])
+    ratio = min(float(message["ratio"]), MAX_SIDE / max(width, height, 1.0))
     size = (max(round(ratio * width), 1), max(round(ratio * height), 1))
+    tiles = [_tile_within(size, ratio, tile) for tile in message["tiles"][:MAX_TILES]]
     across, above = (float(x) for x in message["centre"])
     camera = Camera(
         tuple(message["position"]), tuple(message["focal_point"]), centre=(across, above)
@@ -73,3 +71,10 @@ def _frame_options(message: dict[str, Any]) -> dict[str, Any]:
         "pixel_ratio": ratio,
         "fine": bool(message["fine"]),
     }
+
+
+def _tile_within(size: tuple[int, int], ratio: float, tile: list[float]) -> Tile:
+    """Return a tile of the page (left, top, width, height) in pixels of a frame, and inside it."""
+    left, top, width, height = (round(ratio * side) for side in tile)
+    left, top = min(max(left, 0), size[0] - 1), min(max(top, 0), size[1] - 1)
+    return left, top, min(max(width, 1), size[0] - left), min(max(height, 1), size[1] - top)

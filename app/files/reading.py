@@ -32,6 +32,9 @@ COMPANIONS = {".txt", ".json", ".mtl", ".bin", *IMAGES}
 """Files that come along with the one that is opened."""
 
 
+MAX_SECONDS = 300.0
+"""How long reading a file may take: files that never end would keep all others waiting."""
+
 ENDED = "reading it came to a sudden end; the file is damaged, or needs more memory than there is"
 
 
@@ -44,7 +47,7 @@ def demo_rig(id: str) -> Rig:
 def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
     """Load a character in another process; see `jobs.processes.in_process`."""
     with naming(path):
-        return frozen(in_process(load_with_materials, path, check=check, ended=ENDED))
+        return frozen(in_process(load_with_materials, path, check=check, ended=ENDED, limit=MAX_SECONDS))
 
 
 def load_with_materials(path: Path) -> Rig:

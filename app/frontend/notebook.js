@@ -6,6 +6,7 @@ const CHOSEN = ["joint", "vertex"]
 function render({model, el}) {
   const frame = document.createElement("iframe")
   Object.assign(frame.style, {width: "100%", height: `${model.get("height")}px`, border: 0})
+  frame.sandbox = "allow-scripts allow-downloads"  // nothing of the notebook is in its reach
   frame.srcdoc = model.get("content")
   const send = (name) => frame.contentWindow?.postMessage({cutcell: {[name]: model.get(name)}}, "*")
   const listeners = CHOSEN.map((name) => [`change:${name}`, () => send(name)])

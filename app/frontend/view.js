@@ -2,6 +2,7 @@
 // and playing motions happen here.
 
 import {Actor} from "./actor.js"
+import {AddressBar} from "./address_bar.js"
 import {Animation} from "./animation.js"
 import {plain, plainList} from "./arrays.js"
 import {Connection} from "./connection.js"
@@ -22,6 +23,7 @@ import {loadVtk, Renderer} from "./renderer.js"
 import {Sheet} from "./sheet.js"
 import {skipLink} from "./skip_link.js"
 import {Clip} from "./skin.js"
+import {recall, remember} from "./storage.js"
 import {Transport} from "./transport.js"
 import {acceptDrops, Uploader} from "./upload.js"
 
@@ -67,6 +69,8 @@ export class View {
       seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
     })
     this.rendered = new Rendered(overlay, model)
+    this.addressBar = new AddressBar(window)
+    this.renderer.context.canvas.addEventListener("webglcontextlost", (e) => this.lost(e))
     this.messages = 0
     this.posed = 0
     this.insets = new Insets({
@@ -90,7 +94,10 @@ export class View {
       painting: () => Boolean(this.brush.part),
       turnable: () => document.activeElement && overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
-    this.wentBack = () => model.send_msg({type: "visit", query: location.search})
+    this.wentBack = () => {
+      this.addressBar.stop()
+      model.send_msg({type: "visit", query: location.search})
+    }
     window.addEventListener("popstate", this.wentBack)
     this.connection = new Connection(overlay)
     this.names = new Names(overlay.root)
@@ -113,7 +120,7 @@ export class View {
       this.overlay.theme(message.theme)
       renderer.haze = between(message.theme.top, message.theme.bottom)
     }
-    if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
+    if ("dark" in message) { remember("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if ("rendered" in message) {
       this.rendered.turn(message.rendered)
@@ -255,15 +262,15 @@ export class View {
 
   // The address waits for the picture: to change it takes some browsers longer than to draw.
   putAddress() {
-    if (this.address) {
-      // Another character is a new page: the browser's Back leads to the one before.
-      const rig = (query) => new URLSearchParams(query).get("rig")
-      const other = this.hasAddress && rig(location.search) !== rig(this.address)
-      const put = other ? "pushState" : "replaceState"
-      history[put](history.state, "", location.pathname + this.address)
-      this.hasAddress = true
-    }
+    if (this.address) { this.addressBar.put(this.address) }
     this.address = null
+  }
+
+  // The graphics card was reset, as on a phone that was put away: all that it had is gone.
+  lost(e) {
+    e.preventDefault()  // else it is never restored
+    this.overlay.say("The graphics card was reset. The page is loaded again when it is ready\u00a0…")
+    e.target.addEventListener("webglcontextrestored", () => location.reload(), {once: true})
   }
 
   rested() {
@@ -282,6 +289,7 @@ export class View {
     window.removeEventListener("popstate", this.wentBack)
     this.keys?.remove()
     this.connection?.remove()
+    this.addressBar.stop()
     this.names?.remove()
     this.sheet?.remove()
     this.insets.remove()
@@ -320,7 +328,7 @@ export function render({model}) {
     model.on("msg:custom", (message) => view.receive(message))
     // What was chosen here before, else what the system prefers.
     const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
-    const dark = localStorage.getItem("cutcell dark") ?? system
+    const dark = recall("cutcell dark") ?? system
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches
     model.send_msg({type: "ready", width: window.innerWidth, dark, calm, pictures})
   }

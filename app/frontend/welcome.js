@@ -1,5 +1,6 @@
 // The line over the canvas on a first visit: what the page is for, and three ways in.
 
+import {recall, remember} from "./storage.js"
 import {stylesheet} from "./styles.js"
 import {Uploader} from "./upload.js"
 
@@ -8,12 +9,12 @@ const SEEN = "cutcell welcomed"
 
 export function render({model}) {
   const root = document.createElement("div")
-  if (localStorage.getItem(SEEN)) { return root }
+  if (recall(SEEN)) { return root }
   const part = document.createElement("section")
   part.setAttribute("aria-label", "Welcome")
   const heading = document.createElement("h2")
   heading.textContent = model.headline
-  const leave = () => { part.hidden = true; localStorage.setItem(SEEN, "1") }
+  const leave = () => { part.hidden = true; remember(SEEN, "1") }
   const button = (text, className, act) => {
     const made = document.createElement("button")
     Object.assign(made, {type: "button", textContent: text, className})

@@ -4,11 +4,13 @@ A reader of files need not look whether it is still wanted, may hold Python's lo
 likes, and may crash: no page waits for it, and none is harmed.
 """
 
+import math
 import multiprocessing
 import os
 import pickle
 import signal
 import threading
+import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,6 +19,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from cutcell.errors import FileError
+from cutcell.runtime.subprocesses import end_first_without_memory
 
 Result = TypeVar("Result")
 
@@ -60,6 +63,7 @@ def in_process(
     *args: Any,
     check: Callable[[], object] = lambda: None,
     ended: str = "it came to a sudden end",
+    limit: float = math.inf,
 ) -> Result:
     """Call a function in another process; return its result.
 
@@ -74,14 +78,17 @@ def in_process(
         any more: the process, and those that it has started, are ended then.
     ended : str
         What to say if the process comes to an end by itself.
+    limit : float
+        Seconds after which the process is ended.
 
     Raises
     ------
     FileError
-        The process came to an end by itself.
+        The process came to an end by itself, or took longer than `limit`.
     Exception
         Whatever `work` or `wanted` raises.
     """
+    latest = time.monotonic() + limit
     receiver, sender = _CONTEXT.Pipe(duplex=False)
     process = _CONTEXT.Process(target=_run, args=(sender, work, args), daemon=True)
     with receiver:
@@ -90,6 +97,8 @@ def in_process(
             sender.close()
             while not receiver.poll(ASK_EVERY):
                 check()
+                if time.monotonic() > latest:
+                    raise FileError(f"reading it took longer than {limit:g} seconds")
             good, outcome = pickle.loads(receiver.recv_bytes())
         except (EOFError, ConnectionError):
             raise FileError(f"{ended} ({_ending(process)})") from None
@@ -105,8 +114,7 @@ def _run(pipe: Connection, work: Callable[..., Any], args: tuple[Any, ...]) -> N
     if hasattr(os, "setsid"):
         os.setsid()  # so that it can be ended together with what it starts
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    with suppress(OSError):  # where memory runs out Linux ends this process, not the server
-        Path("/proc/self/oom_score_adj").write_text("1000")
+    end_first_without_memory()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         outcome = pickle.dumps((True, work(*args)), 5)

@@ -58,7 +58,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
 
     def update(*events: Any) -> None:
         tabs.value = state.panel
-        missing.visible = state.bare and not PANELS[state.panel].works_without_skeleton
+        missing.visible = not state.is_panel_usable
         for panel in PANELS:
             is_visible = panel == state.panel and not missing.visible
             if panel in built:

@@ -101,7 +101,7 @@ def check(rig: Rig, choices: Choices, view: str | None = None) -> None:
     ParameterError
         No such panel, bone, axis, view or method; nothing to compare with.
     SkeletonError
-        A mesh without a skeleton, on any panel but "graph".
+        A mesh without a skeleton, on a panel that needs one.
     """
     state_of(rig, choices)
     if view is not None:
@@ -122,7 +122,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
         See `check`.
     """
     panel = check_choice("panel", choices.panel, RENDERED)
-    if panel != "graph":
+    if not PANELS[panel].works_without_skeleton:
         rig.require_joints()
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
     state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)

@@ -60,7 +60,7 @@ def describe(
     ParameterError
         No such panel, bone, axis or method; nothing to compare with.
     SkeletonError
-        A mesh without a skeleton, on any panel but "graph".
+        A mesh without a skeleton, on a panel that needs one.
 
     Examples
     --------
@@ -120,17 +120,17 @@ def _computed(
         state.bare_graph = build_graph(
             rig.mesh, resolution, method=choices.method, progress=progress
         )
-        return state
-    if binding is None:
-        binding = bind(rig, resolution, method=choices.method, progress=progress)
-    state.binding = binding
-    state.materials = (rig.mesh, textures or textures_for(rig, choices))
+    else:
+        state.binding = binding or bind(rig, resolution, method=choices.method, progress=progress)
+        state.materials = (rig.mesh, textures or textures_for(rig, choices))
     if state.panel == "check":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
         if state.finding and state.selected_finding is None:
             codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
             raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
+    if state.bare:
+        return state
     if wants_field(state):
         distances = state.binding.distances
         state.field = (distances, state.joint, distances.field(state.joint))

@@ -33,8 +33,8 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     """
     if state.rig is None:
         return Description()
-    is_bare = state.bare and state.panel != "check"
-    scene = SCENES["graph"] if is_bare else SCENES[state.panel]
+    panel = state.panel if state.is_panel_usable else "graph"
+    scene = SCENES[panel]
     whole = scene(state, memo or Memo())
     whole = replace(whole, actors={**whole.actors, **state.actors})
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):

@@ -44,6 +44,11 @@ class State(
     """State of the page."""
 
     @property
+    def is_panel_usable(self) -> bool:
+        """Whether the panel has anything to show of the character: most need a skeleton."""
+        return not self.bare or PANELS[self.panel].works_without_skeleton
+
+    @property
     def quick(self) -> bool:
         """Whether what stands there is small enough to be described at once."""
         if self.rig is None:

@@ -14,7 +14,7 @@ from .compare import FEWEST_VIEWS, MAX_VIEWS, offered, standard
 from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
-                 "busy", "stage", "fraction", "message", "tour", "vertex", "part",
+                 "busy", "stage", "fraction", "message", "tour", "vertex", "node", "part",
                  "animating", "joint_handle", "measuring_errors"}) | BRUSH  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 

@@ -41,7 +41,10 @@ class Page:
     def _repr_html_(self) -> str:
         """Return the page in a frame of its own."""
         style = f"width: 100%; height: {self.height}px; border: 0"
-        return f'<iframe style="{style}" srcdoc="{html.escape(self.content)}"></iframe>'
+        return (
+            f'<iframe sandbox="allow-scripts allow-downloads" style="{style}" '
+            f'srcdoc="{html.escape(self.content)}"></iframe>'
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the HTML to a file.

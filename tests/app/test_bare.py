@@ -62,6 +62,21 @@ def test_every_panel_can_be_looked_at(bare, loop, panel):
     assert (told == [NO_SKELETON]) == (panel not in ("graph", "check", "learn"))
 
 
+@pytest.mark.parametrize("panel", [panel.id for panel in PANELS.values() if not panel.needs_audit])
+def test_a_panel_that_needs_no_skeleton_stays_and_shows_its_own_scene(bare, loop, panel):
+    bare.state.panel = panel
+    loading.show_rig(bare, bare_arm())
+    loop.run_until(lambda: bare.state.bare_graph is not None)
+    stays = PANELS[panel].works_without_skeleton
+    assert bare.state.panel == (panel if stays else "graph")
+    assert ("interior edges" in resolve(bare.state).actors) == (bare.state.panel == "graph")
+
+
+def test_check_is_rendered_without_a_skeleton():
+    shown = describe(bare_arm(), Choices("check"), resolution=16)
+    assert set(shown.actors) == {"body"}
+
+
 def test_cuts_slices_and_keys_do_no_harm(bare, loop):
     state = bare.state
     for change in (
