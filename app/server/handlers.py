@@ -7,6 +7,7 @@ that know this machine by a name that is not its own (DNS rebinding).
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Mapping
 from html import escape
 from typing import Any
@@ -27,6 +28,14 @@ from tornado.web import RequestHandler, StaticFileHandler
 
 MAX_SESSIONS = 64
 """Pages that are open at once; each holds some 30 MB, and its character."""
+
+MAX_SESSIONS_OF_CLIENT = MAX_SESSIONS // 2
+"""Pages that one computer may have open: a class behind one address, but not the whole server."""
+
+FULL_OF_CLIENT = (
+    f"{MAX_SESSIONS_OF_CLIENT} pages of this server are open at your network address, which is "
+    "its limit. Close one, or come back later."
+)
 
 FULL = (
     f"As many pages of this server are open as it holds ({MAX_SESSIONS}). Close one, or come back "
@@ -70,6 +79,7 @@ def guard(
         "application_context": context,
         "bokeh_websocket_path": "/ws",
         "hosts": hosts,
+        "clients": Counter(),
     }
     routes: list[Any] = [
         (r"/?", PageHandler, {"context": context, "text": text}),
@@ -176,10 +186,16 @@ class SocketHandler(WSHandler):
     """Accepts websockets only from pages of this server, up to the limit of sessions."""
 
     def initialize(
-        self, application_context: Any, bokeh_websocket_path: str, hosts: Collection[str] = ()
+        self,
+        application_context: Any,
+        bokeh_websocket_path: str,
+        hosts: Collection[str] = (),
+        clients: Counter[str] | None = None,
     ) -> None:
-        """Take what the routes give."""
+        """Take what the routes give; `clients` counts the open websockets of each address."""
         self._hosts = hosts
+        self._clients = Counter() if clients is None else clients
+        self._is_counted = False
 
     async def prepare(self) -> None:
         """Refuse before anything begins."""
@@ -188,8 +204,14 @@ class SocketHandler(WSHandler):
             self._refuse(403, "A websocket must tell its Origin.")
         elif full(self.application_context):
             self._refuse(503, FULL)
+        elif self._clients[self._client] >= MAX_SESSIONS_OF_CLIENT:
+            self._refuse(503, FULL_OF_CLIENT)
         else:
             await super().prepare()
+
+    @property
+    def _client(self) -> str:
+        return str(self.request.remote_ip)
 
     def open(self, *args: Any, **more: Any) -> None:
         """Begin, or rejoin, the session of the token that came along."""
@@ -198,7 +220,16 @@ class SocketHandler(WSHandler):
         except Exception:
             self.close(1008, "no token of a session")
         else:
+            self._is_counted = True
+            self._clients[self._client] += 1
             super().open(*args, **more)
+
+    def on_close(self) -> None:
+        """Count one page of the client less."""
+        if self._is_counted:
+            self._is_counted = False
+            self._clients[self._client] -= 1
+        super().on_close()
 
     def check_origin(self, origin: str) -> bool:
         """Whether a page of this origin may talk to the server."""

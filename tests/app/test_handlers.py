@@ -204,6 +204,17 @@ def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monke
     visitors[1].close()
 
 
+def test_one_client_cannot_fill_the_server(here, monkeypatch):
+    wait_until(lambda: not here.sessions)
+    monkeypatch.setattr(handlers, "MAX_SESSIONS_OF_CLIENT", 2)
+    visitors = [Visitor(here.address, "?rig=robot") for _ in range(2)]
+    assert upgrade(here, here.address) == 503
+    assert get(here).status == 200, "the server has room for others"
+    visitors[0].close()
+    wait_until(lambda: upgrade(here, here.address) == 101)
+    visitors[1].close()
+
+
 def test_no_other_site_can_frame_the_page(here):
     assert "frame-ancestors 'self'" in get(here).getheader("Content-Security-Policy")
 
