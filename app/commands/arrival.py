@@ -28,6 +28,7 @@ def watch(session: Session) -> None:
     def visit(message: dict[str, Any]) -> None:
         restore(session, defaults(session.state))
         arrive(session, str(message["query"]), lambda: None)
+        session.arrival.setdefault("tour", -1)  # the entry that is left may be a step of the tour
 
     session.view.listen("visit", visit)
 

@@ -35,8 +35,9 @@ def go(session: Session, index: int, url_values: frozenset[str] = frozenset()) -
         camera = None if session.view.at_home else session.view.camera
         session.before_tour = session.history.now, camera
     aspect = TOUR[index].look
-    state.tour = index
-    if _stands(state, aspect.demo):
+    stands = _stands(state, aspect.demo)
+    state.param.update(tour=index, demo=aspect.demo)  # together: one entry of the browser's history
+    if stands:
         show(session, aspect, url_values)
         aim(session, aspect)
     else:
@@ -49,11 +50,16 @@ def go(session: Session, index: int, url_values: frozenset[str] = frozenset()) -
 
 
 def leave(session: Session) -> None:
-    """Leave the tour; the character, the choices and the camera are those from before it."""
-    session.state.tour = -1
-    if session.before_tour is not None:
-        choices, camera = session.before_tour
-        session.before_tour = None
+    """Leave the tour; the character, the choices and the camera are those from before it.
+
+    A character that a person opened on the tour stays, with its choices.
+    """
+    state = session.state
+    before, session.before_tour = session.before_tour, None
+    demo = TOUR[state.tour].look.demo if state.tour >= 0 else ""
+    state.tour = -1
+    if before is not None and session.character in (before[0]["character"], f"demo {demo}"):
+        choices, camera = before
         revisit(session, choices)
         if choices["character"] == session.character:
             set_camera(session, camera)

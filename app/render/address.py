@@ -9,9 +9,10 @@ from cutcell_viewers.camera import Camera
 
 from ..state import State
 from ..state.method import GRAPH, WEIGHTS, effective
+from ..state.tour import TOUR
 from ..state.url import CAMERA, from_query, simple
 
-UNSEEN = ("tour", "corrections")
+UNSEEN = ("corrections",)
 """Parts of an address that no picture follows."""
 OPTIONS = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
@@ -64,6 +65,10 @@ def read_address(text: str) -> Address:
     problems += [name for name in UNSEEN if name in arrival]
     if problems:
         raise ParameterError(f"the address has entries that cannot be drawn: {', '.join(problems)}")
+    if "tour" in arrival and "bone" not in arrival:  # a link to the step alone: its scene
+        look = TOUR[arrival["tour"]].look
+        arrival["bone"] = look.bone
+        choices = {"panel": look.panel, **look.choices, **choices}
     options = {name: choices.pop(name) for name in (*GRAPH, *WEIGHTS) if name in choices}
     plain = {n: p.default for n, p in simple(state).items() if n not in (*GRAPH, *WEIGHTS, "panel")}
     panel = choices.pop("panel", None)

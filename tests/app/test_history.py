@@ -67,6 +67,7 @@ def test_addresses_with_the_former_names_of_panels_open(old, new):
 
 def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():
     state = State(demo="robot", dark=True, moving=True, playing=True, busy=True, stage="graph")
+    state.node = 7
     assert to_query(state) == "rig=robot&panel=weights"
 
 

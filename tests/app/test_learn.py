@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cutcell_app.commands import arrival
+from cutcell_app.commands import arrival, loading
 from cutcell_app.commands.tour import camera_of, go
 from cutcell_app.layout.session import begin
 from cutcell_app.scenes import resolve
 from cutcell_app.state import PANELS, State
 from cutcell_app.state.tour import TOUR
-from cutcell_assets import DEMOS
+from cutcell_assets import DEMOS, demo_path
 
 
 def test_every_step_has_its_demo_panel_and_choices():
@@ -133,3 +133,32 @@ def test_leaving_brings_back_the_character_the_choices_and_the_camera(session, l
     go(session, -1)
     loop.run_until(lambda: state.demo == "robot" and computed_at(state, 24))
     assert (state.tour, state.panel, state.resolution) == (-1, "weights", 24)
+
+
+def test_a_character_that_a_person_opens_on_the_tour_stays_when_it_is_left(session, loop):
+    state = session.state
+    arrival.arrive(session, "?rig=robot&panel=weights&resolution=16", lambda: None)
+    loop.run_until(lambda: state.binding is not None)
+    go(session, 13)
+    loop.run_until(lambda: state.rig.name == "biped_soup", 60)
+    loading.load_files(session, [demo_path("rabbit")])
+    loop.run_until(lambda: state.rig.name == "rabbit", 60)
+    go(session, -1)
+    loop.run_for(0.1)
+    assert (state.tour, state.rig.name) == (-1, "rabbit")
+    assert session.character == "~"
+    assert "loading" not in state.stage
+
+
+def test_back_and_forward_return_to_steps_with_their_scenes(session, loop):
+    """The browser's buttons tell an address that the page made, with or without a step."""
+    state = session.state
+    visit = session.view._listeners["visit"]
+    before = "?rig=robot&panel=weights&bone=hips&resolution=16"
+    on_tour = "?rig=biped_cape&panel=distance&bone=chest&resolution=16&step=13"
+    for query, step in ((before, -1), (on_tour, 12), (before, -1)):
+        visit({"query": query})
+        rig = "robot" if step < 0 else "biped_cape"
+        loop.run_until(lambda rig=rig: state.rig is not None and state.rig.name == rig, 60)
+        assert state.tour == step
+        assert state.panel == ("weights" if step < 0 else "distance")

@@ -99,6 +99,11 @@ def test_an_error_that_cannot_be_copied_is_told_all_the_same():
         in_process(fails_oddly)
 
 
+def test_what_never_ends_is_ended():
+    with pytest.raises(FileError):
+        in_process(time.sleep, 3600, limit=0.1)
+
+
 def test_running_out_of_memory_is_told():
     with pytest.raises(MemoryError):
         in_process(needs_too_much)

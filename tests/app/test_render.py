@@ -22,6 +22,7 @@ from cutcell_app.files.table_export import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
 from cutcell_app.render.options import READERS
 from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
+from cutcell_app.state.tour import TOUR
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig
@@ -414,11 +415,19 @@ def test_an_address_opens_the_panel_and_the_settings_it_says(drawn, tmp_path):
     assert "ominant" in drawn[-1].description.legend.title
 
 
+def test_a_step_of_the_tour_is_drawn(drawn, tmp_path):
+    step = next(k for k, one in enumerate(TOUR) if one.look.choices.get("graph_resolution") == 20)
+    made_by_the_page = "?rig=biped&panel=weights&bone=hand.L&weights_shown=bone&step=3"
+    for query, title in ((f"?step={step + 1}", "Graph, R = 20"), (made_by_the_page, "hand.L")):
+        result = run(demo_path("biped"), tmp_path / "a.png", "--address", query)
+        assert result.exit_code == 0, result.stderr
+        assert title in drawn[-1].description.legend.title
+
+
 @pytest.mark.parametrize(
     "options",
     [
         ("--address", "?panel=graph&kitchen=1"),
-        ("--address", "?step=3"),
         ("--address", "?corrections=abc"),
         ("--camera", "1,2,3"),
         ("--camera", "1,2,3,0,0,0", "--view", "back"),
