@@ -47,7 +47,9 @@ def demo_rig(id: str) -> Rig:
 def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
     """Load a character in another process; see `jobs.processes.in_process`."""
     with naming(path):
-        return frozen(in_process(load_with_materials, path, check=check, ended=ENDED, limit=MAX_SECONDS))
+        return frozen(
+            in_process(load_with_materials, path, check=check, ended=ENDED, limit=MAX_SECONDS)
+        )
 
 
 def load_with_materials(path: Path) -> Rig:

@@ -268,6 +268,7 @@ export class View {
 
   // The graphics card was reset, as on a phone that was put away: all that it had is gone.
   lost(e) {
+    if (this.gone) { return }
     e.preventDefault()  // else it is never restored
     this.overlay.say("The graphics card was reset. The page is loaded again when it is ready\u00a0…")
     e.target.addEventListener("webglcontextrestored", () => location.reload(), {once: true})

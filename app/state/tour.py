@@ -310,8 +310,8 @@ TOUR = (
         "On this character, the triangles of the right arm face inward. The winding number there "
         "is −1, so the arm counts as hollow: it has no orange edges, and distances run along its "
         "skin. By default cutcell flips such faces first. Here that is switched off.",
-        r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p), \quad "
-        r"\Omega_t: \text{solid angle of triangle } t",
+        r"\begin{gathered} w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \\ "
+        r"\Omega_t: \text{solid angle of triangle } t \end{gathered}",
         "Compare the two arms in the cut. Then flip the inverted faces: the arm fills.",
         Look(
             "graph",

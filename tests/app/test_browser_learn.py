@@ -44,6 +44,8 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
         visit.button("Next").click()
         visit.page.wait_for_function(f"location.search.includes('step={number}')", timeout=LOAD_MS)
         expect(card(visit)).to_contain_text(TOUR[number - 1].title)
+        whole, forward = (one.bounding_box() for one in (card(visit), card(visit).locator(".next")))
+        assert forward["x"] + forward["width"] <= whole["x"] + whole["width"], "nothing is cut off"
         if TOUR[number - 1].title == "Diamonds and circles":
             offer = card(visit).get_by_role("button", name="Any angle")
             offer.click()

@@ -113,6 +113,23 @@ def test_a_lost_connection_is_told_tried_again_and_comes_back(browser, url):
     visit.close()
 
 
+def test_a_graphics_card_that_is_reset_costs_no_choices(browser, url):
+    visit = Visit(browser, url + "/?rig=robot&panel=graph&resolution=24&cut_axis=y")
+    visit.wait_until_bound()
+    visit.page.evaluate("""() => {
+      window.isFirst = true
+      window.card = __cutcell.renderer.context.getExtension("WEBGL_lose_context")
+      card.loseContext()
+    }""")
+    visit.expect_text("graphics card was reset")
+    visit.page.evaluate("card.restoreContext()")
+    visit.page.wait_for_function("!window.isFirst && window.__cutcell?.messages")
+    visit.wait_until_bound()
+    assert "cut_axis=y" in visit.address
+    assert visit.report()["actors"]
+    visit.close()
+
+
 def test_too_large_a_file_is_refused_before_it_is_sent(visit, tmp_path):
     visit.expect_text(re.compile("up to 200 MB"))
     huge = tmp_path / "huge.glb"

@@ -34,7 +34,11 @@ def test_no_tile_is_larger_than_the_frame(tile):
 
 @pytest.mark.parametrize("place", [float("nan"), float("inf"), "x", None])
 def test_what_is_no_number_is_refused(place):
-    for changes in ({"tiles": [[0, 0, place, 1]]}, {"size": [place, 1]}, {"position": [0, 0, place]}):
+    for changes in (
+        {"tiles": [[0, 0, place, 1]]},
+        {"size": [place, 1]},
+        {"position": [0, 0, place]},
+    ):
         with pytest.raises((ValueError, OverflowError, TypeError)):
             _frame_options(message(**changes))
 

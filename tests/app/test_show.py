@@ -58,6 +58,7 @@ def test_a_notebook_without_widgets_has_the_page_in_a_frame(notebook, missing, t
     page = cutcell.show(rig, cutcell.bind(rig, 16), height=300)
     frame = page._repr_html_()
     assert "height: 300px" in frame
+    assert 'sandbox="allow-scripts allow-downloads"' in frame, "it cannot reach the notebook"
     page.save(tmp_path / "arm.html")
     assert framed(frame) == (tmp_path / "arm.html").read_text(encoding="utf-8")
 
