@@ -6,7 +6,7 @@ from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded
 
-from ..jobs.processes import in_process
+from ..jobs.processes import MAX_SECONDS, in_process
 from .session import Session
 
 ENDED = "decoding its images came to a sudden end"

@@ -13,7 +13,7 @@ from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
-from ..jobs.processes import in_process
+from ..jobs.processes import MAX_SECONDS, in_process
 
 IMAGES = {
     ".png",
@@ -31,9 +31,6 @@ IMAGES = {
 COMPANIONS = {".txt", ".json", ".mtl", ".bin", *IMAGES}
 """Files that come along with the one that is opened."""
 
-
-MAX_SECONDS = 300.0
-"""How long reading a file may take: files that never end would keep all others waiting."""
 
 ENDED = "reading it came to a sudden end; the file is damaged, or needs more memory than there is"
 

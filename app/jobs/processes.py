@@ -23,6 +23,9 @@ from cutcell.runtime.subprocesses import end_first_without_memory
 
 Result = TypeVar("Result")
 
+MAX_SECONDS = 300.0
+"""How long reading a file may take: one that never ends would keep all others waiting."""
+
 ASK_EVERY = 0.05
 """Seconds between two questions whether the result is still wanted."""
 
