@@ -4,6 +4,7 @@ from difflib import get_close_matches
 
 from cutcell.errors import ParameterError
 from cutcell.rig import Clip, Rig
+from cutcell.rig.names import folded
 
 
 def find_bone(rig: Rig, name: str) -> int:
@@ -36,12 +37,12 @@ def find_clip(rig: Rig, name: str) -> Clip:
 def _find(what: str, name: str, names: list[str], rig: Rig) -> int:
     if name in names:
         return names.index(name)
-    folded = [one.casefold() for one in names]
-    if folded.count(name.casefold()) == 1:
-        return folded.index(name.casefold())
-    near = get_close_matches(name.casefold(), folded, 3, 0.5)
-    near += [one for one in folded if name.casefold() in one][: 3 - len(near)]
-    matches = [names[folded.index(one)] for one in dict.fromkeys(near)]
+    wanted, comparable = folded(name), [folded(one) for one in names]
+    if comparable.count(wanted) == 1:
+        return comparable.index(wanted)
+    near = get_close_matches(wanted, comparable, 3, 0.5)
+    near += [one for one in comparable if wanted in one][: 3 - len(near)]
+    matches = [names[comparable.index(one)] for one in dict.fromkeys(near)]
     few = matches or names[:8]
     intro = "the nearest names are" if matches else "there are" if len(names) <= 8 else "some are"
     quoted = ", ".join(f'"{one}"' for one in few)

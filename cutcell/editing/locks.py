@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton
 from ..rig.checks import LONG, check_integer, one_line, shown
+from ..rig.names import folded
 
 
 def lock_joints(
@@ -64,7 +65,9 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
     if isinstance(joint, str):
         if joint in names:
             return names.index(joint)
-        close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
+        comparable = dict(zip(map(folded, reversed(names)), reversed(names), strict=True))
+        close = get_close_matches(folded(joint), comparable, n=3, cutoff=0.4)
+        close = [comparable[name] for name in close] or names[:3]
         query = one_line(joint)[:LONG]
         if not names:
             raise ParameterError(f'there is no joint "{query}": the mesh has no skeleton')

@@ -53,11 +53,11 @@ def read_articulation(path: Path) -> Rig:
     names = tuple(map(whole_characters, names))
     skeleton = Skeleton(joints, parents, names)
     stored = _deform(arrays, count, warnings)
-    skeleton, deform_warnings = with_deform(mesh, skeleton, read.weights, stored)
+    skeleton, weights, deform_warnings = with_deform(mesh, skeleton, read.weights, stored)
     return Rig(
         mesh,
         skeleton,
-        read.weights,
+        weights,
         name=path.stem,
         warnings=(
             *warnings,

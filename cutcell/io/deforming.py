@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from ..rig import Skeleton, TriangleMesh
 from ..rig.deform_joints import deform_joints
+from ..rig.names import is_neutral
 from ..runtime.display import listed
+from .weights import normalised
 
 KEY = "cutcell_deform"
 """Under which a saved file stores for each joint whether it deforms: a joint that got no weight
@@ -23,11 +25,34 @@ def with_deform(
     skeleton: Skeleton,
     weights: NDArray[np.float64] | None,
     stored: NDArray[np.int8] | None = None,
-) -> tuple[Skeleton, list[str]]:
+) -> tuple[Skeleton, NDArray[np.float64] | None, list[str]]:
     """Find out which joints may carry weight, and say what a person may want to change.
 
-    Shapes: weights (n, j), stored (j,).
+    Also returns the weights without those of Blender's stand-in for vertices without weights.
+
+    Shapes: weights (n, j), stored (j,); returns weights (n, j).
     """
+    neutral = np.array([is_neutral(name) for name in skeleton.names], bool)
+    if not neutral.any() or neutral.all():
+        skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
+        return skeleton, weights, warnings
+    about_neutral: list[str] = []
+    if weights is not None and weights[:, neutral].any():
+        about_neutral = [_neutral_warning(skeleton, neutral, weights)]
+        weights = normalised(np.where(neutral, 0.0, weights))
+    if stored is not None:
+        stored = np.where(neutral, 0, stored)
+    skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
+    return skeleton, weights, about_neutral + warnings
+
+
+def _deforming(
+    mesh: TriangleMesh,
+    skeleton: Skeleton,
+    weights: NDArray[np.float64] | None,
+    stored: NDArray[np.int8] | None,
+) -> tuple[Skeleton, list[str]]:
+    """Return the skeleton with the joints that deform, and warnings."""
     if not len(skeleton.joints):
         return skeleton, []
     if stored is None or not (stored == 1).any():
@@ -55,6 +80,17 @@ def _inferred(
     if stray.any():
         stray &= ~deform_joints(mesh, skeleton).deform
     return replace(skeleton, deform=carries & ~stray), _stray_warnings(skeleton, stray)
+
+
+def _neutral_warning(
+    skeleton: Skeleton, neutral: NDArray[np.bool_], weights: NDArray[np.float64]
+) -> str:
+    count = int((weights[:, neutral] > 0).any(axis=1).sum())
+    return (
+        f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
+        f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding gives "
+        "them new weights"
+    )
 
 
 def _control_warnings(skeleton: Skeleton, out: NDArray[np.bool_]) -> list[str]:

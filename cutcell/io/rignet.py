@@ -65,11 +65,11 @@ def read_rignet(path: Path) -> Rig:
         contents = _parse(text)
         skeleton_names = tuple(contents.positions)
         read = _weights(contents, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton, warnings = with_deform(mesh, _skeleton(contents), read.weights)
+        skeleton, weights, warnings = with_deform(mesh, _skeleton(contents), read.weights)
         return Rig(
             mesh,
             skeleton,
-            read.weights,
+            weights,
             name=obj.stem,
             warnings=(
                 *read.warnings,

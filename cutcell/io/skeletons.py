@@ -58,7 +58,7 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
             f"the joints of {path.name} do not fit the mesh: {_extent(skeleton.joints)} for "
             f"{_extent(rig.mesh.vertices)}. Give the two files the same scale, axes and origin"
         )
-    skeleton, notes = with_deform(rig.mesh, skeleton, None, stored)
+    skeleton, _, notes = with_deform(rig.mesh, skeleton, None, stored)
     return replace(rig, skeleton=skeleton, warnings=(*rig.warnings, *warnings, *notes))
 
 

@@ -15,6 +15,7 @@ from ..errors import SkeletonError
 from ..runtime.repr import Summarized
 from .arrays import as_array, check_finite, frozen
 from .checks import shown
+from .names import is_neutral
 
 LONG_CYCLE = 10
 """Joints of a cycle that are named; of a longer one only the first and the last."""
@@ -35,7 +36,8 @@ class Skeleton(Summarized):
     names : sequence of str, optional
         One name a joint; "joint 0", "joint 1", ... when left out.
     deform : array_like, shape (j,), bool, optional
-        Which joints may carry weight; all when left out.
+        Which joints may carry weight; when left out, all but Blender's stand-in for vertices
+        without weights, ``neutral_bone``.
     orientations : array_like, shape (j, 3, 3), float64, optional
         Rest orientations: column k is the joint's k-th local axis, a unit vector in the mesh's
         space. None where the file does not tell.
@@ -76,7 +78,10 @@ class Skeleton(Summarized):
                 f'joint "{names[bad[0]]}" has the parent {parents[bad[0]]}, but parents are '
                 f"-1 (a root) to {count - 1}"
             )
-        deform = np.ones(count, bool) if self.deform is None else self.deform
+        deform = self.deform
+        if deform is None:
+            neutral = np.array([is_neutral(name) for name in names], bool)
+            deform = ~neutral | neutral.all()
         deform = as_array(deform, np.bool_, (count,), "deform", SkeletonError)
         if count and not deform.any():
             raise SkeletonError("no joint of the skeleton may carry weight (deform is all False)")

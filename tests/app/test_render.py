@@ -272,7 +272,7 @@ def test_what_cannot_be_drawn_is_told_in_one_sentence(drawn, tmp_path, out, opti
 
 
 def test_names_are_found_as_people_write_them(rig):
-    assert find_bone(rig, "elbow") == find_bone(rig, "ELBOW") == 1
+    assert find_bone(rig, "elbow") == find_bone(rig, "ELBOW") == find_bone(rig, "Ｅlbow") == 1
     with pytest.raises(ParameterError, match='nearest names are "elbow"'):
         find_bone(rig, "elbo")
     with pytest.raises(ParameterError, match="there are"):

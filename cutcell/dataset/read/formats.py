@@ -55,7 +55,7 @@ def read_unirig(data: bytes, name: str) -> Rig:
                 f"and {len(joints)} joints"
             )
         weights = normalised(np.where(np.isfinite(skin) & (skin > 0), skin, 0.0))
-    skeleton, warnings = with_deform(mesh, skeleton, weights)
+    skeleton, weights, warnings = with_deform(mesh, skeleton, weights)
     return Rig(mesh, skeleton, weights, name=name, warnings=tuple(warnings))
 
 

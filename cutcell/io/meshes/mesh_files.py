@@ -31,7 +31,7 @@ def read_soup(path: Path, bare: bool = False) -> Rig:
     joints, says_deform = read_skeleton_json(skeleton_path)
     warnings: list[str] = []
     if not says_deform:
-        joints, warnings = with_deform(mesh, joints, None)
+        joints, _, warnings = with_deform(mesh, joints, None)
     return Rig(mesh, joints, name=path.stem, warnings=tuple(warnings), source=surfaces)
 
 

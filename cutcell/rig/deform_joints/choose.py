@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from ...errors import ParameterError
+from ..names import folded
 from ..rig import Rig
 from ..skeleton import Skeleton
 from .guess import deform_joints
@@ -23,8 +24,8 @@ def choose_deform(
     rig : Rig
     deform, no_deform : sequences of str
         Names of joints that shall, or shall not, carry weight. ``*`` and ``?`` stand for any
-        letters and for one; upper and lower case are the same. A joint that both name carries
-        none.
+        letters and for one; upper and lower case are the same, and so are full and half width.
+        A joint that both name carries none.
     fresh : bool
         Forget the file's weights first, and which joints they are of: `deform_joints` says.
 
@@ -55,14 +56,12 @@ def choose_deform(
 
 
 def _named(skeleton: Skeleton, pattern: str) -> list[int]:
-    wanted = pattern.casefold()
-    found = [j for j, name in enumerate(skeleton.names) if name.casefold() == wanted]
+    wanted, names = folded(pattern), [folded(name) for name in skeleton.names]
+    found = [j for j, name in enumerate(names) if name == wanted]
     # A name may hold what stands for other letters; then it means itself.
-    found = found or [
-        j for j, name in enumerate(skeleton.names) if fnmatchcase(name.casefold(), wanted)
-    ]
+    found = found or [j for j, name in enumerate(names) if fnmatchcase(name, wanted)]
     if not found:
-        close = get_close_matches(pattern, skeleton.names, n=3, cutoff=0.4)
+        close = [skeleton.names[names.index(one)] for one in get_close_matches(wanted, names, 3, 0.4)]
         hint = f"; did you mean {' or '.join(close)}?" if close else ""
         raise ParameterError(f'no joint is called "{pattern}"{hint}')
     return found

@@ -17,6 +17,9 @@ from .names import (
     is_end_marker,
     is_fingertip,
     is_marked_deforming,
+    is_mmd_control,
+    is_mmd_tip,
+    is_of_mmd,
     is_root,
     is_socket,
     may_be_control,
@@ -112,16 +115,18 @@ class _Guess:
     def by_name(self) -> None:
         """Rule out what is called an end marker, a socket, or a control of another joint."""
         marked = [is_marked_deforming(name) for name in self.names]
+        of_mmd = any(map(is_of_mmd, self.names))
         for j in self.leaves_first:
             if any(marked) and not marked[j]:
                 self._rule_out(j, "others are marked DEF")
                 continue
             is_marker = is_end_marker(self.names[j]) or is_fingertip(self.names[j])
+            is_marker |= of_mmd and is_mmd_tip(self.names[j])
             if is_marker and not len(self._bones_below(j)):
                 self._rule_out(j, "end marker, by its name")
             elif is_socket(self.names[j]):
                 self._rule_out(j, "holds things, by its name")
-            elif is_control(self.names[j]):
+            elif is_control(self.names[j]) or (of_mmd and is_mmd_control(self.names[j])):
                 self._rule_out(j, "control, by its name")
         self._by_name_and_place(np.array([may_be_control(name) for name in self.names]))
 

@@ -132,7 +132,9 @@ def read_rig(
     shape = len(mesh.vertices), len(bind.nodes)
     weights, sums = _dense(document, parts, stored.weights, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
-    skeleton, warnings = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
+    skeleton, weights, warnings = with_deform(
+        mesh, read_skeleton(nodes, bind), weights, stored_deform
+    )
     attached = read_attachments(document, nodes, bind)
     left_out = left_out_meshes(document, nodes, skinned, attached)
     warnings += sum_warnings(sums, mesh.faces, stored.named)

@@ -35,6 +35,13 @@ def test_names_and_patterns():
     assert chosen(["Arm*"]) == {"Root", "Arm.L", "Arm.R", "Arm*"}
 
 
+def test_names_are_compared_as_people_read_them():
+    skeleton = replace(rig().skeleton, names=("全ての親", "左足ＩＫ", "Ｒｏｏｔ", "ｾﾝﾀｰ", "Arm"))
+    some = replace(rig(), skeleton=skeleton)
+    assert choose_deform(some, ["センター"]).skeleton.deform.tolist() == [1, 1, 1, 1, 0]
+    assert choose_deform(some, no_deform=["root", "*ik"]).skeleton.deform.tolist() == [1, 0, 0, 0, 0]
+
+
 def test_the_file_can_be_forgotten():
     fresh = choose_deform(rig(), fresh=True)
     assert fresh.weights is None

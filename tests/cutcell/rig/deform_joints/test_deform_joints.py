@@ -75,6 +75,27 @@ def test_a_control_may_be_the_only_joint_that_moves_a_foot():
     assert ruled_out(told) == {"foot.IK": 'control at the place of "foot"'}
 
 
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["全ての親", "センター", "上半身", "首", "頭", "頭ＩＫ", "頭先"],
+        ["全ての親", "ｾﾝﾀｰ", "上半身", "首", "頭", "頭IK", "頭先"],
+        ["ParentNode", "Center", "UpperBody", "Neck", "Head", "HeadIK", "HeadTip"],
+        ["mother", "center", "upper body", "neck", "head", "head IK", "head tip"],
+        ["subete no oya", "sentaa", "jouhanshin", "kubi", "atama", "atama IK", "atama saki"],
+    ],
+)
+def test_controls_of_mmd_are_recognized_in_all_spellings(names):
+    joints = [[0.01, 0.01, 0.01], [0.2, 0.1, 0.1], *CHAIN, CHAIN[2], [0.8, 0.1, 0.1]]
+    told = found(joints, [-1, 0, 1, 2, 3, 0, 4], names)
+    assert set(ruled_out(told)) == {names[0], names[1], names[5], names[6]}
+
+
+def test_a_centre_elsewhere_is_a_bone():
+    told = found(CHAIN, [-1, 0, 1], ["center", "neck", "tail_tip"])
+    assert ruled_out(told) == {}
+
+
 def test_sockets_hold_things_of_their_own():
     told = found([*CHAIN, [0.7, 0.1, 0.1]], [-1, 0, 1, 2], ["a", "b", "hand", "handslot"])
     assert ruled_out(told) == {"handslot": "holds things, by its name"}
