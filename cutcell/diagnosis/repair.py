@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.weld import weld
 from ..graph.lattice import Lattice
-from ..io.gltf.read.faces import with_faces
+from ..io.gltf.read.faces import with_faces, with_rescaled
 from ..rig import Rig
 from ..weights.prune import prune
 from .cleaning import clean
@@ -52,6 +52,8 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
             if mend is _cleaned and np.abs(weights - rig.weights).max() < ROUNDING:
                 unchanged.append(code)
             rig = rig.with_weights(weights)
+            if mend is _as_they_are:
+                rig = with_rescaled(rig, by_code[code].vertices)
     turned, dropped = (
         _mask(len(before.mesh.faces), [by_code[code].faces for code in codes if code in by_code])
         for codes in (TURNED, DROPPED)

@@ -12,7 +12,7 @@ from ..rig import Rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes
-from .gltf.container import MAGIC
+from .gltf.container import ENDINGS, MAGIC
 from .gltf.read.read import GltfSource, read_gltf
 from .gltf.write.fresh import check_fits, new_files
 from .gltf.write.skinned import can_be_skinned, skinned
@@ -26,7 +26,7 @@ from .skeletons import with_skeleton
 
 __all__ = ["load", "save"]
 
-GLTF = (".glb", ".gltf", ".vrm")
+GLTF = ENDINGS
 READABLE = (
     "GLB, glTF, VRM, FBX, USD, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, "
     "OFF"

@@ -32,8 +32,8 @@ def with_deform(
 
     Shapes: weights (n, j), stored (j,); returns weights (n, j).
     """
-    neutral = np.array([is_neutral(name) for name in skeleton.names], bool)
-    if not neutral.any() or neutral.all():
+    neutral = neutral_joints(skeleton)
+    if not neutral.any():
         skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
         return skeleton, weights, warnings
     about_neutral: list[str] = []
@@ -44,6 +44,12 @@ def with_deform(
         stored = np.where(neutral, 0, stored)
     skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
     return skeleton, weights, about_neutral + warnings
+
+
+def neutral_joints(skeleton: Skeleton) -> NDArray[np.bool_]:
+    """Return which joints are Blender's stand-in for vertices without weights, shape (j,)."""
+    neutral = np.array([is_neutral(name) for name in skeleton.names], bool)
+    return neutral & (not neutral.all())
 
 
 def _deforming(

@@ -27,6 +27,7 @@ from ..names import HALVES, whole_characters
 
 MAGIC = pygltflib.MAGIC
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
+ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
 BINARY_CHUNK = 0x004E4942
 

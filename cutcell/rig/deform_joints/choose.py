@@ -61,7 +61,9 @@ def _named(skeleton: Skeleton, pattern: str) -> list[int]:
     # A name may hold what stands for other letters; then it means itself.
     found = found or [j for j, name in enumerate(names) if fnmatchcase(name, wanted)]
     if not found:
-        close = [skeleton.names[names.index(one)] for one in get_close_matches(wanted, names, 3, 0.4)]
+        close = [
+            skeleton.names[names.index(one)] for one in get_close_matches(wanted, names, 3, 0.4)
+        ]
         hint = f"; did you mean {' or '.join(close)}?" if close else ""
         raise ParameterError(f'no joint is called "{pattern}"{hint}')
     return found

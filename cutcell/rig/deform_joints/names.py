@@ -57,8 +57,8 @@ MMD_BODY = re.compile(
 )
 """Names that tell a rig of MMD: root, view centre, upper and lower body."""
 MMD_CONTROL_WORDS = _set(
-    "all of parent parents node mother motherbone parentnode root master center centre sentaa senta "
-    "groove guruubu gurubu view cnt subete no oya subetenooya sousa chuushin sousachuushin"
+    "all of parent parents node mother motherbone parentnode root master center centre sentaa "
+    "senta groove guruubu gurubu view cnt subete no oya subetenooya sousa chuushin sousachuushin"
 )
 """Words of the same controls in translated and romanised rigs of MMD; elsewhere a centre may be a
 bone."""

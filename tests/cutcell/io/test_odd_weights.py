@@ -60,7 +60,8 @@ def test_odd_weights_count_as_none_and_are_told(tmp_path, make, name, owner, val
     cutcell.save(tmp_path / "out.glb", rig)
     again = cutcell.load(tmp_path / "out.glb")
     assert_allclose(again.weights, rig.weights, atol=1e-7)
-    assert again.warnings == ()
+    # Rows that did not change keep their bytes in a glTF document.
+    assert bool(again.warnings) == (make is odd_glb)
 
 
 def test_a_vertex_with_nothing_but_odd_weights_has_none():

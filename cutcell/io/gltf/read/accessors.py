@@ -61,16 +61,20 @@ class Accessor:
     def __len__(self) -> int:
         return self.base.count
 
+    def stored(self) -> NDArray:
+        """Return all elements in the stored type, shape (count, width)."""
+        values = self.base.array()
+        if self.rows is not None and self.replaced is not None:
+            values = values.copy()
+            values[self.rows.array()[:, 0]] = self.replaced.array()
+        return values
+
     def decoded(self, at: NDArray[np.intp] | slice = slice(None)) -> NDArray:
         """Return some elements, shape (k, width).
 
         float64 for floats and normalised integers, else the stored integer type.
         """
-        values = self.base.array()
-        if self.rows is not None and self.replaced is not None:
-            values = values.copy()
-            values[self.rows.array()[:, 0]] = self.replaced.array()
-        values = values[at]
+        values = self.stored()[at]
         if self.base.dtype.kind == "f":
             with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
                 return values.astype(np.float64)

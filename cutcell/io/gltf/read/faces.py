@@ -39,6 +39,18 @@ def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> 
     return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces[kept]), source=source)
 
 
+def with_rescaled(rig: Rig, vertices: NDArray[np.intp]) -> Rig:
+    """Return a rig of which some weights are saved with a sum of one, whatever the file has."""
+    source = rig.source
+    if not isinstance(source, GltfSource):
+        return rig
+    rescaled = np.zeros(len(rig.mesh.vertices), bool)
+    if source.rescaled is not None:
+        rescaled |= source.rescaled
+    rescaled[vertices] = True
+    return replace(rig, source=replace(source, rescaled=rescaled))
+
+
 def _edited(
     stored: StoredFaces, kept: NDArray[np.bool_], turned: NDArray[np.bool_], ends: NDArray[np.intp]
 ) -> StoredFaces:

@@ -64,6 +64,8 @@ class GltfSource:
     faces: tuple[StoredFaces, ...] = ()
     attached: tuple[int, ...] = ()
     """The node of each attachment."""
+    rescaled: NDArray[np.bool_] | None = None
+    """Vertices whose weights are saved as they were loaded, not as the document has them."""
 
 
 def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:

@@ -9,23 +9,24 @@ from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....errors import MeshError, SkeletonError, WeightsError
 from ....rig import Rig
 from ...materials.gltf_colored import with_surface_colors
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
-from ..container import Document, json_bytes, pack_glb
+from ..container import ENDINGS, Document, json_bytes, pack_glb
 from ..deform import store_deform
 from ..influences import pack_influences, store_influences
 from ..read.faces import store_faces, take_faces
 from ..read.read import GltfSource, StoredPart
 from .buffer_file import buffer_file, relative_uri
+from .influence_rows import StoredRows, store_changed_rows, stored_rows
 from .moves import store_moves, take_moves
 from .structure import take_structure
 
@@ -36,17 +37,17 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     _check_same(rig, source)
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
     _rename(document, rig)
-    before = [_take_influences(document, part) for part in source.parts]
-    dropped = [accessor for old in before for accessor in old.values()]
     faces = take_faces(document, rig)
-    dropped += [accessor for new in faces for accessor in new.old.values()]
+    dropped = [accessor for new in faces for accessor in new.old.values()]
     parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped += [new.old for new in moves]
+    changed = _changed_parts(document, rig, parts)
+    dropped += [accessor for one in changed for accessor in one.old.values()]
     store_deform(document, ((part.skin, part.joints) for part in parts), rig.skeleton.deform)
     buffer = BufferWriter(document, source.document.buffers, dropped)
     store_moves(buffer, moves)
-    for part, old in zip(parts, before, strict=True):
-        _store(buffer, document, rig, part, old)
+    for one in changed:
+        _store(buffer, document, rig, one)
     store_faces(buffer, faces)
     buffer = with_surface_colors(buffer, source.document.surfaces)
     carried = carry_images(buffer, source.document, path)
@@ -83,6 +84,30 @@ def _rename(document: dict[str, Any], rig: Rig) -> None:
             document["nodes"][source.nodes[was]]["name"] = name
 
 
+class _ChangedPart(NamedTuple):
+    """A part whose weights change, the accessors of the old ones, and what stays of them."""
+
+    part: StoredPart
+    old: dict[str, int]
+    rows: StoredRows | None
+
+
+def _changed_parts(
+    document: dict[str, Any], rig: Rig, parts: Sequence[StoredPart]
+) -> list[_ChangedPart]:
+    """Take the weights of parts out of a document, except of those where none changes."""
+    source: GltfSource = rig.source
+    keeps = source.document.path.suffix.lower() in ENDINGS  # not made of an FBX or USD file
+    changed = []
+    for part, saved in zip(source.parts, parts, strict=True):
+        _check_reachable(rig, saved)
+        rows = stored_rows(rig, part, saved) if keeps else None
+        if rows is None or not rows.is_same.all():
+            partly = rows if rows is not None and rows.joints and rows.is_same.any() else None
+            changed.append(_ChangedPart(saved, _take_influences(document, saved), partly))
+    return changed
+
+
 def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:
     """Remove JOINTS_n and WEIGHTS_n from a part's primitives and return what they were."""
     removed: dict[str, int] = {}
@@ -97,18 +122,19 @@ def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, An
     return [document["meshes"][mesh]["primitives"][k] for mesh, k in part.primitives]
 
 
-def _store(
-    buffer: BufferWriter, document: dict[str, Any], rig: Rig, part: StoredPart, old: dict[str, int]
-) -> None:
-    weights = rig.weights[part.rows]  # type: ignore[index]
-    _check_reachable(weights, rig, part)
-    influences = pack_influences(weights[:, part.joints])
-    new = store_influences(buffer, influences, len(part.joints), old)
+def _store(buffer: BufferWriter, document: dict[str, Any], rig: Rig, one: _ChangedPart) -> None:
+    part = one.part
+    weights = rig.weights[part.rows][:, part.joints]  # type: ignore[index]
+    if one.rows is not None:
+        new = store_changed_rows(buffer, weights, one.rows, one.old)
+    else:
+        new = store_influences(buffer, pack_influences(weights), len(part.joints), one.old)
     for primitive in _primitives(document, part):
         primitive["attributes"].update(new)
 
 
-def _check_reachable(weights: NDArray, rig: Rig, part: StoredPart) -> None:
+def _check_reachable(rig: Rig, part: StoredPart) -> None:
+    weights = rig.weights[part.rows]  # type: ignore[index]
     outside = np.ones(weights.shape[1], bool)
     outside[part.joints] = False
     rows, columns = np.nonzero(weights * outside)

@@ -28,9 +28,23 @@ def test_a_name_is_split_into_words(name, expected):
     [
         (
             names.is_end_marker,
-            ["LeftToe_End", "HeadEnd", "Bip01 HeadNub", "tail_end.006", "End Site", "armEff"]
-            + ["左手先", "人指先_L", "ｾﾝﾀｰ先", "髪先.001", "ＨｅａｄＥｎｄ"],
-            ["Bend", "Legend", "spine", "endo_arm", "Hub", "左つま先", "爪先.L", "左足先EX"],
+            ["LeftToe_End", "HeadEnd", "Bip01 HeadNub", "tail_end.006", "End Site", "armEff"],
+            ["Bend", "Legend", "spine", "endo_arm", "Hub"],
+        ),
+        (
+            names.is_end_marker,
+            ["左手先", "人指先_L", "ｾﾝﾀｰ先", "髪先.001", "ＨｅａｄＥｎｄ"],
+            ["左つま先", "爪先.L", "左足先EX"],
+        ),
+        (
+            names.is_control,
+            ["全ての親", "センター", "ｾﾝﾀｰ", "センター先", "グルーブ", "ｸﾞﾙｰﾌﾞ", "操作中心"],
+            ["前髪センター", "上半身"],
+        ),
+        (
+            names.is_control,
+            ["左ダミー", "neutral_bone", "neutral_bone (2)", "Ｃｔｒｌ"],
+            ["neutral", "bone_neutral_pose"],
         ),
         (
             names.is_fingertip,
@@ -39,11 +53,8 @@ def test_a_name_is_split_into_words(name, expected):
         ),
         (
             names.is_control,
-            ["PoleTarget.L", "r-LEGCONTROL", "Ctrl_Tail", "l-ARMORIENT", "control-heel-roll.l"]
-            + ["全ての親", "センター", "ｾﾝﾀｰ", "センター先", "グルーブ", "ｸﾞﾙｰﾌﾞ", "操作中心", "左ダミー"]
-            + ["neutral_bone", "neutral_bone (2)", "Ｃｔｒｌ"],
-            ["LeftForeArmRoll", "polevault", "Hips", "mandible", "LeftArm", "前髪センター", "上半身"]
-            + ["neutral", "bone_neutral_pose"],
+            ["PoleTarget.L", "r-LEGCONTROL", "Ctrl_Tail", "l-ARMORIENT", "control-heel-roll.l"],
+            ["LeftForeArmRoll", "polevault", "Hips", "mandible", "LeftArm"],
         ),
         (
             names.may_be_control,

@@ -1,0 +1,158 @@
+"""Weights of a document of which only some rows change: the others keep their stored bytes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....rig import Rig
+from ...deforming import neutral_joints
+from ...weights import normalised
+from ..buffer import BufferWriter
+from ..influences import pack_influences, sorted_influences
+from ..read.accessors import find_accessor
+from ..read.primitives import influence_sets, read_weights
+from ..read.read import GltfSource, StoredPart
+
+SAME = 1e-12
+"""Weights may differ by it from those that loading gave: scaling to a sum of one rounds."""
+LOCAL = 0.5
+"""Integers stay integers while more than this part of the rows is unchanged. Else most weights are
+new, and floats hold them exactly."""
+
+
+@dataclass(frozen=True, eq=False)
+class StoredRows:
+    """Influences of a part as its document stores them, each of `joints` and `shares` (n, 4).
+
+    `is_same` (n,) tells which rows loading would read as the weights to be saved.
+    """
+
+    joints: list[NDArray]
+    shares: list[NDArray]
+    is_same: NDArray[np.bool_]
+
+
+def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
+    """Compare the stored weights of a part with those of a rig; `saved` has the skin to be saved."""
+    assert rig.weights is not None
+    source: GltfSource = rig.source
+    # Reading again counts its own memory and has its own caches.
+    document = replace(
+        source.document, warnings=[], accessors={}, decoded={}, finite=set(), triangles={}
+    )
+    mesh, k = part.primitives[0]
+    primitive = document.json["meshes"][mesh]["primitives"][k]
+    count = part.rows.stop - part.rows.start
+    read = read_weights(document, primitive, count, len(part.joints), part.label).weights
+    loaded = np.zeros((count, len(part.joints))) if read is None else read
+    neutral = neutral_joints(source.skeleton)[part.joints]
+    if loaded[:, neutral].any():
+        loaded = normalised(np.where(neutral, 0.0, loaded))
+    origin = np.arange(len(source.nodes)) if rig.origin is None else rig.origin
+    expected, is_same = np.zeros((count, len(saved.joints))), np.ones(count, bool)
+    for slot, joint in enumerate(part.joints):
+        if slot < len(saved.joints) and origin[saved.joints[slot]] == joint:
+            expected[:, slot] = loaded[:, slot]
+        else:  # the skin names another joint by this number now
+            is_same &= loaded[:, slot] == 0
+    weights = rig.weights[part.rows][:, saved.joints]
+    is_same &= np.abs(weights - expected).max(axis=1, initial=0) <= SAME
+    if source.rescaled is not None:
+        is_same &= ~source.rescaled[part.rows]
+    named = primitive["attributes"]
+    joints, shares = (
+        [
+            find_accessor(document, named[f"{name}_{n}"], "VEC4", part.label).stored()
+            for n in influence_sets(named)
+        ]
+        for name in ("JOINTS", "WEIGHTS")
+    )
+    if len(saved.joints) < len(part.joints):  # unused slots, too, may name joints that are gone
+        for one in joints:
+            is_same &= (one < len(saved.joints)).all(axis=1)
+    return StoredRows(joints, shares, is_same)
+
+
+def store_changed_rows(buffer: BufferWriter, weights: NDArray, rows: StoredRows,
+                       old: dict[str, int]) -> dict[str, int]:  # fmt: skip
+    """Store weights of which some rows are those of a document; return accessors by attribute.
+
+    Component types stay if they can hold what changes. More sets are added where needed, and none
+    is removed.
+
+    Shapes: weights (n, j), of the skin's joints.
+    """
+    changed = np.flatnonzero(~rows.is_same)
+    share_type = _share_type(rows)
+    if share_type.kind == "f":
+        joints, shares = pack_influences(weights[changed])
+    else:
+        joints, shares = _as_integers(weights[changed], share_type)
+    stored: dict[str, int] = {}
+    for n in range(max(len(joints), len(rows.joints))):
+        where, share = (
+            _with_rows(source, n, new, changed, kind)
+            for source, new, kind in (
+                (rows.joints, joints, _joint_type(rows.joints, joints)),
+                ([_converted(one, share_type) for one in rows.shares], shares, share_type),
+            )
+        )
+        name = f"JOINTS_{n}"
+        stored[name] = buffer.store(where, old.get(name))
+        name = f"WEIGHTS_{n}"
+        stored[name] = buffer.store(share, old.get(name))
+        if share_type.kind != "f":
+            buffer.accessors[stored[name]]["normalized"] = True
+    return stored
+
+
+def _share_type(rows: StoredRows) -> np.dtype[Any]:
+    """Return the component type of weights that are saved."""
+    types = {one.dtype for one in rows.shares}
+    stays = len(types) == 1 and rows.is_same.mean() > LOCAL
+    return types.pop() if stays else np.dtype("<f4")
+
+
+def _joint_type(stored: list[NDArray], new: NDArray) -> np.dtype[Any]:
+    """Return the component type of joints: the stored one if it can hold the new numbers."""
+    kind = max((one.dtype for one in stored), key=lambda dtype: dtype.itemsize)
+    return kind if new.max(initial=0) <= np.iinfo(kind).max else np.dtype("<u2")
+
+
+def _converted(shares: NDArray, kind: np.dtype[Any]) -> NDArray:
+    """Return stored weights (n, 4) as another type, the same if it is theirs."""
+    if shares.dtype == kind or shares.dtype.kind == "f":
+        return shares
+    return np.maximum(shares / np.iinfo(shares.dtype).max, -1.0).astype(kind)
+
+
+def _with_rows(
+    stored: list[NDArray], n: int, new: NDArray, changed: NDArray[np.intp], kind: np.dtype[Any]
+) -> NDArray:
+    """Return set n with rows that changed; shapes stored (n, 4), new (s, c, 4)."""
+    values = np.zeros(stored[0].shape, kind)
+    if n < len(stored):
+        values[:] = stored[n]
+    values[changed] = new[n] if n < len(new) else 0
+    return values
+
+
+def _as_integers(weights: NDArray, kind: np.dtype[Any]) -> tuple[NDArray, NDArray]:
+    """Sort each row's influences into slots of four, as integers whose sum stands for one.
+
+    Shapes: weights (n, j); returns joints (s, n, 4), shares (s, n, 4).
+    """
+    one = np.iinfo(kind).max
+    exact = normalised(weights) * one
+    whole = np.floor(exact)
+    rest = np.rint(exact.sum(axis=1) - whole.sum(axis=1))[:, None]
+    order = np.argsort(whole - exact, axis=1, kind="stable")  # the largest fractions first
+    np.put_along_axis(
+        whole, order, np.take_along_axis(whole, order, 1) + (np.arange(exact.shape[1]) < rest), 1
+    )
+    rows, columns = np.nonzero(whole)
+    return sorted_influences(rows, columns, whole[rows, columns].astype(kind), len(weights))
