@@ -126,8 +126,18 @@ def repair(session: Session, codes: list[str]) -> None:
         if state.repair is not None:
             first, earlier = state.repair, state.repair.done
         original = first.rig if isinstance(first, Diagnosis) else first.before
-        done = Repair(original, repaired.rig, first.counts, (*earlier, *repaired.done))
-        swap(session, repaired.rig, repair=done)
+        in_vain = frozenset(finding.code for finding in repaired.in_vain)
+        if not repaired.repaired:  # nothing changed, and what was computed stays
+            if isinstance(first, Repair):
+                in_vain |= first.in_vain
+            after = state.rig
+        else:
+            after = repaired.rig
+        done = Repair(original, after, first.counts, (*earlier, *repaired.done), in_vain)
+        if after is state.rig:
+            state.repair = done
+        else:
+            swap(session, after, repair=done)
 
     session.start(work, show)
 

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, Finding
 from cutcell.diagnosis.leaks import moves_own_part
+from cutcell.editing.corrections import PartCorrection
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..commands.check import look_at, repair, take_back
-from ..commands.correct import keep_file_vertices, leave_out, lock
+from ..commands.correct import correct_part, keep_file_vertices, leave_out, lock
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
@@ -22,6 +24,8 @@ from .controls import LINE, button, caption, column, has_weights, intro, section
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
+SAME = 1e-9
+"""Weights that differ by less are equal."""
 OF_PARTS = ("boneless-components", "unreachable-vertices")
 """What can be mended by a choice of what parts of the mesh follow."""
 LEFT_OUT = ("stray-weights", "joints-outside")
@@ -132,16 +136,23 @@ def _details(session: Session) -> list[Any]:
         return []
     lines: list[Any] = [_line(text) for text in finding.details[:MAX_DETAILS]]
     if state.finding.startswith(EXPORT):
-        if has_weights(state.rig) and len(finding.vertices):
+        lines += _part_choices(session, finding)
+        if _differs_from_file(state, finding):
             keep = partial(keep_file_vertices, session, finding.vertices)
             lines.append(button("Use the file's weights there", keep, icon="history"))
+        elif has_weights(state.rig) and len(finding.vertices):
+            lines.append(_line("The weights there are the file's.", "text.primary"))
+            lines.append(_line(finding.advice, "text.primary"))
         return lines
     more = len(finding.details) - MAX_DETAILS
     lines += [_line(f"and {more} more")] if more > 0 else []
     lines.append(_line(finding.advice, "text.primary"))
-    if finding.repair:
+    if finding.code in _in_vain(state):
+        lines.append(_line("Its repair did not help, so that nothing was changed."))
+    elif finding.repair:
         lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
         lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
+    lines += _part_choices(session, finding)
     if finding.code in LEFT_OUT:
         lines += _joint_choices(session, finding.joints)
     if finding.code in OF_PARTS and not state.bare:
@@ -149,6 +160,33 @@ def _details(session: Session) -> list[Any]:
         see = partial(state.param.update, panel="weights", part=vertex)
         lines.append(button("Choose how these parts are bound", see, icon="category"))
     return lines
+
+
+def _differs_from_file(state: State, finding: Finding) -> bool:
+    """Return whether an export has other weights than the file at vertices of a finding."""
+    if not has_weights(state.rig) or state.binding is None or not len(finding.vertices):
+        return False
+    in_file = state.rig.weights[finding.vertices]
+    differs = np.abs(state.binding.weights[finding.vertices] - in_file).max(axis=1) > SAME
+    return bool((differs & in_file.any(axis=1)).any())
+
+
+def _part_choices(session: Session, finding: Finding) -> list[pmui.Button]:
+    """Return buttons that make parts rigid to the joint that a finding names for each."""
+    state = session.state
+    if state.bare or state.binding is None:
+        return []
+    names, graph = state.rig.skeleton.names, state.binding.graph
+    component = SurfaceOperators.of(graph).component[graph.vertex_node] if finding.parts else []
+    buttons = []
+    for vertex, joint in finding.parts[:MAX_DETAILS]:
+        part = PartCorrection("glued", names[joint])
+        if state.corrections.parts.get(vertex) == part:
+            continue
+        vertices = np.flatnonzero(component == component[vertex]).tolist()
+        act = partial(correct_part, session, vertices, part)
+        buttons.append(button(f"Rigid to {shown_name(names[joint])}", act, icon="link"))
+    return buttons
 
 
 def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Button]:
@@ -180,11 +218,14 @@ def _repairs(session: Session) -> list[Any]:
     state = session.state
     rows: list[Any] = []
     able = [] if state.diagnosis is None else [f for f in state.diagnosis.findings if f.repair]
+    able = [finding for finding in able if finding.code not in _in_vain(state)]
     if len(able) > 1:
         codes = [finding.code for finding in able]
         rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
+    if state.repair.before is state.rig:
+        return rows + [_line(text) for text in state.repair.done]
     now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
@@ -197,6 +238,11 @@ def _repairs(session: Session) -> list[Any]:
         ),
         button("Undo repair", lambda: take_back(session), icon="undo"),
     ]
+
+
+def _in_vain(state: State) -> frozenset[str]:
+    """Return the codes of findings whose repair did not help."""
+    return frozenset() if state.repair is None else state.repair.in_vain
 
 
 def _line(text: str, color: str = "text.secondary") -> pmui.Typography:

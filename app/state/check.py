@@ -22,12 +22,15 @@ class Repair:
         How many findings of each severity there were before.
     done : tuple of str
         What was done, in sentences.
+    in_vain : frozenset of str
+        Codes of findings whose last repair did not help.
     """
 
     before: Rig
     after: Rig
     counts: dict[str, int]
     done: tuple[str, ...]
+    in_vain: frozenset[str] = frozenset()
 
 
 class DiagnosisChoices(param.Parameterized):

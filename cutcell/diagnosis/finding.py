@@ -43,6 +43,7 @@ TITLES = {
     "leaked-weights": "Leaked weights",
     "stray-weights": "Stray weights",
     "weight-islands": "Islands of weight",
+    "far-parts": "Parts that follow a far joint",
     "stretched-edges": "Edges that stretch",
     "flipped-faces": "Faces that flip",
     "lost-volume": "Volume that is lost",
@@ -96,6 +97,8 @@ class Finding:
         The action of `Diagnosis.repaired`; empty without a safe repair.
     pose : Pose, optional
         A pose that shows it, where the rest pose does not.
+    parts : tuple of (int, int)
+        A vertex of each connected component at fault, and the joint to make it rigid to.
     """
 
     code: str
@@ -108,6 +111,7 @@ class Finding:
     details: tuple[str, ...] = ()
     repair: str = ""
     pose: Pose | None = None
+    parts: tuple[tuple[int, int], ...] = ()
 
     @property
     def title(self) -> str:
@@ -127,6 +131,7 @@ class Finding:
             "faces": self.faces.tolist(),
             "joints": self.joints.tolist(),
             "repair": self.repair or None,
+            "parts": [list(part) for part in self.parts],
             "pose": None if self.pose is None else asdict(self.pose),
         }
 

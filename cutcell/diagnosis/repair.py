@@ -16,11 +16,15 @@ from ..rig import Rig
 from ..weights.prune import prune
 from .cleaning import clean
 from .finding import Finding
-from .weights import INFLUENCES
+from .leaks import check_leaks
+from .subject import Subject
+from .weights import INFLUENCES, check_weights
 
 TURNED = ("inverted-faces",)
-NOTHING = "unchanged, because it is plausible through the body"
+NOTHING = "unchanged, because this repair does not help"
 ROUNDING = 1e-9
+MIN_GAIN = 0.01
+"""Part of its severity that a finding must lose for its repair to have helped."""
 DROPPED = ("duplicate-faces", "degenerate-faces")
 
 
@@ -35,22 +39,26 @@ class Repaired:
         Descriptions of the repairs.
     repaired : tuple of Finding
         The repaired findings.
+    in_vain : tuple of Finding
+        Findings whose repair did not help; nothing of it is left.
     """
 
     rig: Rig
     done: tuple[str, ...]
     repaired: tuple[Finding, ...]
+    in_vain: tuple[Finding, ...] = ()
 
 
 def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
     """Repair findings of a rig."""
     before, by_code = rig, {finding.code: finding for finding in findings}
-    unchanged = []
+    in_vain = []
     for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
         if code in by_code and rig.weights is not None:
             weights = _allowed(rig, mend(rig, by_code[code]))
-            if mend is _cleaned and np.abs(weights - rig.weights).max() < ROUNDING:
-                unchanged.append(code)
+            if mend is not _as_they_are and not _helps(rig, weights, by_code[code]):
+                in_vain.append(code)
+                continue
             rig = rig.with_weights(weights)
             if mend is _as_they_are:
                 rig = with_rescaled(rig, by_code[code].vertices)
@@ -61,10 +69,35 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
     if turned.any() or dropped.any():
         rig = with_faces(rig, ~dropped, turned)
     done = tuple(
-        f"{finding.title}: {NOTHING if finding.code in unchanged else finding.repair}."
+        f"{finding.title}: {NOTHING if finding.code in in_vain else finding.repair}."
         for finding in findings
     )
-    return Repaired(rig, done, tuple(findings))
+    return Repaired(
+        rig,
+        done,
+        tuple(finding for finding in findings if finding.code not in in_vain),
+        tuple(finding for finding in findings if finding.code in in_vain),
+    )
+
+
+def _helps(rig: Rig, weights: NDArray[np.float64], finding: Finding) -> bool:
+    """Return whether new weights, shape (n, j), make a finding less severe."""
+    if np.abs(weights - _weights(rig)).max() < ROUNDING:
+        return False
+    if WEIGHTS[finding.code] is not _cleaned:
+        return True
+    before = Subject(rig)
+    after = Subject(rig.with_weights(weights), distances=before.distances)
+    return _excess(after, finding.code) < (1 - MIN_GAIN) * _excess(before, finding.code)
+
+
+def _excess(subject: Subject, code: str) -> float:
+    """Return how much the joints of a finding weigh at its vertices; 0 without the finding."""
+    for check in (check_weights, check_leaks):
+        for finding in check(subject):
+            if finding.code == code:
+                return float(_weights(subject.rig)[np.ix_(finding.vertices, finding.joints)].sum())
+    return 0.0
 
 
 def _mask(count: int, which: list[NDArray[np.intp]]) -> NDArray[np.bool_]:

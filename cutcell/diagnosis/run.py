@@ -11,6 +11,7 @@ from ..geodesics import BoneDistances
 from ..method import check_resolution
 from ..rig import Rig
 from ..runtime.progress import Progress, silent
+from .far_parts import check_far_parts
 from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
 from .leaks import check_leaks
@@ -21,7 +22,7 @@ from .subject import Subject
 from .sweep import check_sweep
 from .weights import check_weights
 
-WEIGHT_CHECKS = (check_weights, check_leaks, check_sweep)
+WEIGHT_CHECKS = (check_weights, check_leaks, check_far_parts, check_sweep)
 CHECKS = (check_mesh, check_joints, check_parts, *WEIGHT_CHECKS)
 
 

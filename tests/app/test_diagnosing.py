@@ -9,6 +9,7 @@ import pytest
 import cutcell
 from cutcell import Corrections, JointCorrection
 from cutcell.diagnosis import Diagnosis, Finding
+from cutcell.diagnosis.repair import WEIGHTS
 from cutcell.rig import TriangleMesh
 from cutcell_app.commands import loading
 from cutcell_app.commands.check import look_at, repair, take_back
@@ -174,3 +175,49 @@ def test_joints_that_lead_a_part_are_locked_not_excluded(bound, loop):
     next(b for label, b in buttons.items() if "Exclude elbow" in label)
     next(b for label, b in buttons.items() if "Lock wrist" in label).clicks += 1
     assert bound.state.corrections == Corrections(joints={"wrist": JointCorrection(locked=True)})
+
+
+def labels(session):
+    return {button.label: button for button in check(session).select(pmui.Button)}
+
+
+def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypatch):
+    state, before = spoiled.state, spoiled.state.rig
+    look_at(spoiled, "unweighted-vertices")
+    assert {"Repair", "Repair all 2"} <= labels(spoiled).keys()
+    monkeypatch.setitem(WEIGHTS, "unweighted-vertices", lambda rig, finding: rig.weights)
+    repair(spoiled, ["unweighted-vertices"])
+    loop.run_until(lambda: state.repair is not None)
+    assert state.rig is before
+    assert state.repair.in_vain == {"unweighted-vertices"}
+    look_at(spoiled, "unweighted-vertices")
+    look_at(spoiled, "unweighted-vertices")
+    assert not {"Repair", "Repair all 2", "Undo repair"} & labels(spoiled).keys()
+    repair(spoiled, ["inverted-faces"])
+    loop.run_until(lambda: state.rig is not before and state.diagnosis is not None)
+    assert codes(spoiled) == ["unweighted-vertices"]
+    assert "Undo repair" in labels(spoiled)
+
+
+def test_the_files_weights_are_not_offered_where_they_are(bound, loop):
+    state = bound.state
+    weights = state.rig.weights.copy()
+    weights[:5] = np.roll(weights[:5], 1, axis=1)
+    state.rig = state.rig.with_weights(weights)
+    finding = Finding("weight-islands", "warning", "", "", vertices=np.arange(5))
+    shown = {"export_diagnosis": Diagnosis(state.rig, (finding,)), "panel": "check"}
+    state.param.update(**shown, finding=EXPORT + finding.code)
+    assert "Use the file's weights there" in labels(bound)
+    state.binding = replace(state.binding, weights=weights)
+    state.param.update(**shown, finding=EXPORT + finding.code)
+    assert "Use the file's weights there" not in labels(bound)
+
+
+def test_a_part_that_follows_a_far_joint_can_be_made_rigid(bound, loop):
+    state = bound.state
+    loop.run_until(lambda: state.diagnosis is not None)
+    finding = Finding("far-parts", "warning", "", "", vertices=np.arange(5), parts=((0, 2),))
+    state.param.update(diagnosis=Diagnosis(state.rig, (finding,)), finding=finding.code)
+    labels(bound)["Rigid to wrist"].clicks += 1
+    (part,) = state.corrections.parts.values()
+    assert (part.how, part.joint) == ("glued", "wrist")

@@ -1,5 +1,7 @@
 """A repair removes what it was for, brings nothing new, and can be saved into the document."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -105,3 +107,25 @@ def test_a_repaired_document_keeps_all_else(tmp_path):
         assert list(skin.pop("extras")) == ["cutcell_deform"]
     for kept in ("animations", "nodes", "materials", "skins"):
         assert after.get(kept) == before.get(kept)
+
+
+def test_a_repair_in_vain_leaves_nothing_changed(monkeypatch):
+    weights = WORM.weights.copy()
+    island = np.flatnonzero(WORM.mesh.vertices[:, 0] > 0.93)
+    weights[island] = np.eye(weights.shape[1])[1]
+    before = cutcell.diagnose(WORM.with_weights(weights), 24)
+    again = before.repaired(["weight-islands"])
+    assert [finding.code for finding in again.repaired] == ["weight-islands"]
+    assert again.in_vain == ()
+
+    def no_better(rig, *args):
+        """Let the island follow another far joint."""
+        other = weights.copy()
+        other[island] = np.eye(weights.shape[1])[2]
+        return replace(cutcell.clean(rig), weights=other)
+
+    monkeypatch.setattr("cutcell.diagnosis.repair.clean", no_better)
+    repaired = before.repaired(["weight-islands"])
+    assert repaired.rig.weights is before.rig.weights
+    assert repaired.repaired == ()
+    assert [finding.code for finding in repaired.in_vain] == ["weight-islands"]

@@ -37,7 +37,7 @@ class StoredRows:
 
 
 def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
-    """Compare the stored weights of a part with those of a rig; `saved` has the skin to be saved."""
+    """Compare the stored weights of a part with those of a rig; `saved` has the new skin."""
     assert rig.weights is not None
     source: GltfSource = rig.source
     # Reading again counts its own memory and has its own caches.

@@ -1,0 +1,77 @@
+"""Parts that rigidly follow a joint far from them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell import Rig, Skeleton, TriangleMesh
+from tests.bars import grid_box
+from tests.cutcell.diagnosis.worm import worm
+
+
+def with_part(at, joint, shares=1.0, bone=None):
+    """Return the worm with a small box near a place along it, and its weight on one joint."""
+    rig = worm()
+    corners, faces = grid_box(4)
+    box = (corners - corners.mean(axis=0)) * 0.08 + at
+    count = len(rig.mesh.vertices)
+    mesh = TriangleMesh(
+        np.vstack([rig.mesh.vertices, box]), np.vstack([rig.mesh.faces, faces + count])
+    )
+    weights = np.zeros((len(box), 7))
+    weights[:, joint] = shares
+    weights[:, joint - 1] += 1 - shares
+    weights = np.vstack([rig.weights, weights])
+    skeleton = rig.skeleton
+    if bone is not None:
+        names = (*skeleton.names, "blade", "blade tip")
+        joints = np.vstack([skeleton.joints, bone])
+        skeleton = Skeleton(joints, [*skeleton.parents, 6, 7], names)
+        weights = np.hstack([weights, np.zeros((len(weights), 2))])
+    return Rig(mesh, skeleton, weights), np.arange(count, count + len(box))
+
+
+@pytest.mark.parametrize("joint", [1, 2])
+def test_a_part_that_follows_a_far_joint_is_named_with_the_nearest(joint):
+    rig, part = with_part([0.9, 0.15, 0.0], joint)
+    finding = cutcell.diagnose(rig, 24, only_weights=True)["far-parts"]
+    assert finding.vertices.tolist() == part.tolist()
+    assert finding.joints.tolist() == [joint]
+    ((vertex, nearest),) = finding.parts
+    assert vertex in part
+    assert nearest in (5, 6)
+    assert finding.to_dict()["parts"] == [[vertex, nearest]]
+    glued = cutcell.PartCorrection("glued", rig.skeleton.names[nearest])
+    bound = cutcell.bind(rig, 24, corrections=cutcell.Corrections(parts={vertex: glued}))
+    after = cutcell.diagnose(rig.with_weights(bound.weights), 24, only_weights=True)
+    assert "far-parts" not in after
+
+
+def test_a_bone_of_the_part_is_the_nearest():
+    at = np.array([0.5, 0.2, 0.0])
+    rig, _ = with_part(at, 1, bone=[at, at + [0.05, 0, 0]])
+    ((_, nearest),) = cutcell.diagnose(rig, 24, only_weights=True)["far-parts"].parts
+    assert rig.skeleton.names[nearest] == "blade"
+
+
+@pytest.mark.parametrize(
+    ("at", "joint", "shares"),
+    [
+        ([0.9, 0.15, 0.0], 6, 1.0),  # the nearest
+        ([0.9, 0.15, 0.0], 5, 1.0),  # its neighbour
+        ([0.9, 0.15, 0.0], 2, 0.6),  # not rigid
+    ],
+)
+def test_other_parts_are_no_fault(at, joint, shares):
+    rig, _ = with_part(at, joint, shares)
+    assert "far-parts" not in cutcell.diagnose(rig, 24, only_weights=True)
+
+
+def test_a_part_that_may_not_follow_the_nearest_is_no_fault():
+    rig, part = with_part([0.9, 0.15, 0.0], 1)
+    allowed = np.ones(rig.weights.shape, bool)
+    allowed[part] = rig.weights[part] > 0
+    rig = replace(rig, allowed=allowed)
+    assert "far-parts" not in cutcell.diagnose(rig, 24, only_weights=True)
