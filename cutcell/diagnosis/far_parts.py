@@ -27,7 +27,10 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     weights, distances = subject.rig.weights, subject.distances
     if weights is None or distances is None or not weights.any():
         return
-    component = np.where(subject.is_used, subject.component[subject.welded], -1)
+    label = subject.component[subject.welded]
+    sizes = np.bincount(label)
+    number = np.argsort(np.argsort(-sizes, kind="stable"))  # the largest part is the first
+    component = np.where(subject.is_used, number[label], -1)
     joint = np.where(weights.max(axis=1) > RIGID, weights.argmax(axis=1), -1)
     order = np.argsort(component, kind="stable")
     parts = np.split(order, np.flatnonzero(np.diff(component[order])) + 1)

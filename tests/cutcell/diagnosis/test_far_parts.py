@@ -42,6 +42,7 @@ def test_a_part_that_follows_a_far_joint_is_named_with_the_nearest(joint):
     ((vertex, nearest),) = finding.parts
     assert vertex in part
     assert nearest in (5, 6)
+    assert finding.details[0].startswith(f"Part 2 ({len(part)} vertices)")
     assert finding.to_dict()["parts"] == [[vertex, nearest]]
     glued = cutcell.PartCorrection("glued", rig.skeleton.names[nearest])
     bound = cutcell.bind(rig, 24, corrections=cutcell.Corrections(parts={vertex: glued}))
@@ -51,7 +52,7 @@ def test_a_part_that_follows_a_far_joint_is_named_with_the_nearest(joint):
 
 def test_a_bone_of_the_part_is_the_nearest():
     at = np.array([0.5, 0.2, 0.0])
-    rig, _ = with_part(at, 1, bone=[at, at + [0.05, 0, 0]])
+    rig, _ = with_part(at, 1, bone=[at, at + 0.05])
     ((_, nearest),) = cutcell.diagnose(rig, 24, only_weights=True)["far-parts"].parts
     assert rig.skeleton.names[nearest] == "blade"
 
