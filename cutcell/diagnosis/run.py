@@ -11,12 +11,11 @@ from ..geodesics import BoneDistances
 from ..method import check_resolution
 from ..rig import Rig
 from ..runtime.progress import Progress, silent
-from .far_parts import check_far_parts
 from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
 from .leaks import check_leaks
 from .mesh import check_mesh
-from .parts import check_parts
+from .parts import check_far_parts, check_parts
 from .repair import Repaired, repair
 from .subject import Subject
 from .sweep import check_sweep

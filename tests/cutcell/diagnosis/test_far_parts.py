@@ -52,7 +52,7 @@ def test_a_part_that_follows_a_far_joint_is_named_with_the_nearest(joint):
 
 def test_a_bone_of_the_part_is_the_nearest():
     at = np.array([0.5, 0.2, 0.0])
-    rig, _ = with_part(at, 1, bone=[at, at + 0.05])
+    rig, _ = with_part(at, 1, bone=[at, np.add(at, [0.05, 0, 0])])
     ((_, nearest),) = cutcell.diagnose(rig, 24, only_weights=True)["far-parts"].parts
     assert rig.skeleton.names[nearest] == "blade"
 
