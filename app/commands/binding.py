@@ -246,14 +246,21 @@ def prune(binding: Binding, options: dict[str, Any], rig: Rig, corrections: Corr
     """Return what was bound generously with the weights that are chosen and corrected."""
     weights = keep_strongest(binding.distances, binding.weights, **options)
     most = options["max_influences"]
-    return _reweighted(
-        binding, finished(rig, binding.graph, weights, corrections, most), rig, corrections
-    )
+    weights = finished(rig, binding.graph, weights, corrections, most)
+    return _reweighted(binding, weights, rig, corrections, options)
 
 
-def _reweighted(binding: Binding, weights: NDArray, rig: Rig, corrections: Corrections) -> Binding:
+def _reweighted(
+    binding: Binding,
+    weights: NDArray,
+    rig: Rig,
+    corrections: Corrections,
+    options: dict[str, Any],
+) -> Binding:
+    """Return a binding with other weights, and the options of the method that they follow."""
     warnings = binding_warnings(rig, binding.distances, weights, corrections)
-    return replace(binding, weights=weights, warnings=warnings)
+    method = binding.method.with_options(**{"leaf": binding.method.leaf, **options})
+    return replace(binding, weights=weights, warnings=warnings, method=method)
 
 
 def weigh(session: Session) -> None:
@@ -309,7 +316,7 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
     """Show weights that are made in a moment; those of a large character, when they are there."""
     state = session.state
     rig, binding, corrections = state.rig, state.binding, state.corrections
-    most = state.max_influences
+    most, options = state.max_influences, effective(method_of(state, WEIGHTS))
 
     def weights() -> NDArray | CutcellError:
         try:
@@ -325,7 +332,7 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
                 _withdraw(session, {}, bound.corrections)
         elif now is not None and now.distances is binding.distances:
             session.binder.reweighted(corrections)
-            state.binding = _reweighted(now, weights, rig, corrections)
+            state.binding = _reweighted(now, weights, rig, corrections, options)
 
     newest = session.tasks.newest("weights")
     if not state.quick:

@@ -21,7 +21,7 @@ from cutcell_viewers.worker import draw_apart
 
 from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
-from ..files.table_export import save_numbers
+from ..files.table_export import save_numbers, settings_of
 from ..jobs.jobs import COMPUTING, DRAWING, Slots
 from ..jobs.processes import in_process
 from ..scenes import Memo, following, resolve
@@ -158,9 +158,11 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
         if what != "distances":
             tables["weights"] = binding.weights
         if what != "weights":
-            tables["distances"] = binding.distances.all_joints(progress).T
+            unit = binding.graph.lattice.size
+            tables["distances"] = binding.distances.all_joints(progress).T * unit
         check = partial(progress, "writing the numbers", 0.0)
-        in_process(partial(save_numbers, path, named, **tables), check=check, ended=ENDED)
+        save = partial(save_numbers, path, named, settings=settings_of(binding), **tables)
+        in_process(save, check=check, ended=ENDED)
 
     _hand_over(session, name, write, done)
 

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import zipfile
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import numpy as np
 from cutcell.graph import CutCellGraph
 from cutcell_viewers.graph_scene import KINDS
 
+from .table_export import settings_of
+
 
 def save_graph(path: Path, graph: CutCellGraph) -> None:
     """Write a graph's nodes and edges; positions and lengths are in the file's units.
@@ -17,16 +20,18 @@ def save_graph(path: Path, graph: CutCellGraph) -> None:
     Parameters
     ----------
     path : Path
-        Ends in ".zip", for "nodes.csv" and "edges.csv" in it, or in ".npz".
+        Ends in ".zip", for "nodes.csv", "edges.csv" and "settings.json" in it, or in ".npz".
     graph : CutCellGraph
     """
     places = graph.lattice.to_file(graph.nodes)
     lengths = graph.lengths * graph.lattice.size
+    settings = json.dumps(settings_of(graph))
     if path.suffix == ".npz":
         np.savez_compressed(
             path, nodes=places, node_kind=graph.node_kind, triangle=graph.triangle,
             edges=graph.edges, edge_kind=graph.edge_kind, lengths=lengths,
             vertex_node=graph.vertex_node, kinds=np.array(KINDS),
+            settings=np.array(settings),
         )  # fmt: skip
         return
     kinds = np.array(KINDS)
@@ -45,3 +50,4 @@ def save_graph(path: Path, graph: CutCellGraph) -> None:
             table.writerow(head)
             table.writerows(rows)
             archive.writestr(name, text.getvalue())
+        archive.writestr("settings.json", settings)

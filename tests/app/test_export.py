@@ -8,7 +8,7 @@ import os
 import re
 import signal
 import time
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
@@ -228,11 +228,47 @@ def test_numbers_are_those_that_were_computed(bound, loop):
     assert name == "arm-numbers.npz"
     with np.load(io.BytesIO(content)) as numbers:
         np.testing.assert_array_equal(numbers["weights"], bound.state.binding.weights)
-        np.testing.assert_array_equal(numbers["distances"].T, bound.state.binding.distances.joint)
         assert numbers["joint_names"].tolist() == ["shoulder", "elbow", "wrist"]
     name, content = taken(loop, export_numbers, bound, "weights", "csv")
     assert name == "arm-weights.csv"
-    assert content.decode().splitlines()[0] == "vertex,shoulder,elbow,wrist"
+    lines = content.decode().splitlines()
+    header = next(line for line in lines if not line.startswith("#"))
+    assert header == "vertex,shoulder,elbow,wrist"
+
+
+def test_exported_distances_are_in_the_files_units(bound, loop):
+    size = np.ptp(bound.state.rig.mesh.bounds, axis=0).max()
+    assert size != pytest.approx(1)
+    expected = bound.state.binding.distances.joint.T * size
+    _, content = taken(loop, export_numbers, bound, "all", "npz")
+    with np.load(io.BytesIO(content)) as numbers:
+        np.testing.assert_allclose(numbers["distances"], expected)
+    _, content = taken(loop, export_numbers, bound, "distances", "csv")
+    text = io.StringIO(content.decode())
+    rows = [line for line in text if not line.startswith("#")]
+    table = np.genfromtxt(rows, delimiter=",", skip_header=1)
+    np.testing.assert_allclose(table[:, 1:], expected, rtol=1e-6)
+
+
+def test_exported_numbers_name_the_settings_that_they_were_computed_with(bound, loop):
+    for chosen in ({"max_influences": 2}, {"falloff": "paper", "alpha": 0.25}):
+        before = bound.state.binding
+        bound.state.param.update(**chosen)
+        loop.run_until(
+            lambda before=before: bound.state.binding is not before and not bound.state.busy, 60
+        )
+        _, content = taken(loop, export_numbers, bound, "all", "npz")
+        with np.load(io.BytesIO(content)) as numbers:
+            settings = json.loads(str(numbers["settings"]))
+        assert settings["program"] == f"cutcell {cutcell.__version__}"
+        assert "file's units" in settings["lengths"]
+        names = {field.name for field in fields(cutcell.Method)}
+        assert names <= set(settings)
+        assert settings["resolution"] == bound.state.resolution
+        assert settings["max_influences"] == 2
+        assert {name: settings[name] for name in chosen} == chosen
+        _, content = taken(loop, export_numbers, bound, "weights", "csv")
+        assert f"# falloff: {settings['falloff']}" in content.decode().splitlines()
 
 
 def test_numbers_that_are_not_there_yet_are_told(session):

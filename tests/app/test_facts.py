@@ -1,5 +1,6 @@
 """What the inspector tells of a vertex, without a browser."""
 
+import json
 import zipfile
 from dataclasses import replace
 
@@ -113,9 +114,13 @@ def test_a_graph_leaves_as_numbers(binding, tmp_path):
         ends = held["nodes"][graph.edges]
         length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
         np.testing.assert_allclose(held["lengths"], length, atol=1e-6)
+        settings = json.loads(str(held["settings"]))
     with zipfile.ZipFile(tmp_path / "graph.zip") as archive:
         nodes = archive.read("nodes.csv").decode().splitlines()
         edges = archive.read("edges.csv").decode().splitlines()
+        assert json.loads(archive.read("settings.json")) == settings
+    assert settings["resolution"] == 16
+    assert settings["program"] == f"cutcell {cutcell.__version__}"
     assert nodes[0] == "node,kind,x,y,z,triangle"
     assert (len(nodes), len(edges)) == (len(graph.nodes) + 1, len(graph.edges) + 1)
     a, b = graph.edges[-1]
