@@ -81,7 +81,36 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
         if method_of(state, WEIGHTS) != chosen or state.corrections != corrections:
             weigh(session)  # others were chosen in the meantime
 
-    session.start(work, done, failed=lambda: _go_back(session, request))
+    session.start(work, done, failed=lambda: _failed(session, request))
+
+
+def is_current(session: Session) -> bool:
+    """Return whether the weights, or the graph of a bare mesh, follow all that is chosen."""
+    state, bound, binding = session.state, session.binder.bound, session.state.binding
+    if state.rig is None or bound is None or bound.mesh is not state.rig.mesh:
+        return False
+    if bound.request != binding_request(state) or bound.corrections != state.corrections:
+        return False
+    if state.bare:
+        return state.bare_graph is not None
+    return binding is not None and options_of(binding) == effective(method_of(state, WEIGHTS))
+
+
+def is_pending(session: Session) -> bool:
+    """Return whether weights are computed, or are about to be."""
+    tasks = session.tasks
+    return tasks.jobs("main").running or tasks.jobs("weights").running or tasks.is_due("choice")
+
+
+def options_of(binding: Binding) -> dict[str, Any]:
+    """Return the options that turned a binding's distances into weights."""
+    return effective({name: getattr(binding.method, name) for name in WEIGHTS})
+
+
+def resume(session: Session) -> None:
+    """Compute weights that other work, which failed, has stopped."""
+    if session.state.rig is not None and not is_current(session):
+        bind(session, session.state.message)
 
 
 def binding_work(
@@ -132,10 +161,17 @@ def binding_request(state: State) -> dict[str, Any]:
 
 def cancel(session: Session) -> None:
     """Stop computing; what was there stays."""
-    state = session.state
-    if session.tasks.jobs("main").cancel():
+    state, waiting = session.state, bool(session.exports)
+    exports = session.tasks.jobs("export").cancel() or waiting
+    computes = session.tasks.jobs("main").cancel()
+    session.exports.clear()
+    session.ended("export")
+    session.ended("main")
+    if exports or computes:
+        text = "Cancelled. Nothing was changed." if computes else "Cancelled."
+        state.message = ("info", text + " Nothing was exported." * exports)
+    if computes:
         session.uploads.stay(session.uploads.key)
-        state.param.update(busy=False, message=("info", "Cancelled. Nothing was changed."))
         if state.graph is not None:
             _go_back(session, session.binder.requested)
 
@@ -185,19 +221,28 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
         session.binder.arrived(Bound(rig.mesh, request, Corrections(), graph))
         session.state.param.update(bare_graph=graph, message=message)
 
-    session.start(work, done, failed=lambda: _go_back(session, request))
+    session.start(work, done, failed=lambda: _failed(session, request))
+
+
+def _failed(session: Session, request: dict[str, Any]) -> None:
+    """Drop the exports of what cannot be computed, and go back."""
+    session.drop_exports()
+    _go_back(session, request)
 
 
 def _go_back(session: Session, failed: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state, bound = session.state, session.binder.bound
-    request, corrections = binding_request(State()), Corrections()
+    request, corrections, options = binding_request(State()), Corrections(), {}
     if state.graph is not None and bound is not None:
         request, corrections = bound.request, bound.corrections
-    if binding_request(state) != failed or (failed == request and state.corrections == corrections):
+    if state.binding is not None:
+        options = options_of(state.binding)
+    same = state.corrections == corrections and method_of(state, tuple(options)) == options
+    if binding_request(state) != failed or (failed == request and same):
         return
     session.binder.withdrawn(request)
-    _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
+    _withdraw(session, {**{name: request[name] for name in GRAPH}, **options}, corrections)
     if state.graph is None:
         bind(session, state.message)
 
@@ -291,7 +336,8 @@ def weigh(session: Session) -> None:
             bound.falloffs[key] = (distances, many)
             weigh(session)
 
-        session.start(work, done)
+        request = binding_request(state)
+        session.start(work, done, failed=lambda: _failed(session, request))
 
 
 def _weights(state: Any, **few: Any) -> NDArray:
@@ -328,6 +374,7 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
         now, bound = state.binding, session.binder.bound
         if isinstance(weights, CutcellError):
             session.fail(weights)
+            session.drop_exports()
             if bound is not None and state.corrections == corrections != bound.corrections:
                 _withdraw(session, {}, bound.corrections)
         elif now is not None and now.distances is binding.distances:

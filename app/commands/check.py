@@ -5,13 +5,15 @@ from typing import Any
 import numpy as np
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
 
 from ..scenes.common import bounds_of
 from ..state.check import Repair
 from ..state.method import GRAPH, method_of
-from .binding import binding_request, swap
+from .binding import binding_request, resume, swap
+from .correct import with_file_parts
 from .look import set_camera
 from .session import Session
 
@@ -136,10 +138,18 @@ def repair(session: Session, codes: list[str]) -> None:
         done = Repair(original, after, first.counts, (*earlier, *repaired.done), in_vain)
         if after is state.rig:
             state.repair = done
+            resume(session)
         else:
-            swap(session, after, repair=done)
+            swap(session, after, repair=done, **_corrections(session, before.rig, after))
 
-    session.start(work, show)
+    session.start(work, show, failed=lambda: resume(session))
+
+
+def _corrections(session: Session, before: Rig, after: Rig) -> dict[str, Any]:
+    """Return corrections that use repaired weights of the file, where it is these that changed."""
+    if before.weights is after.weights or session.state.graph is None:
+        return {}
+    return {"corrections": with_file_parts(session)}
 
 
 def take_back(session: Session) -> None:

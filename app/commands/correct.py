@@ -160,13 +160,41 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
     correct(session, corrections)
 
 
-def keep_file_parts(session: Session) -> None:
-    """Give every part of the mesh the file's weights, to correct these."""
-    graph = session.state.binding.graph
-    component = SurfaceOperators.of(graph).component[graph.vertex_node]
-    first = np.unique(component, return_index=True)[1]
-    parts = dict.fromkeys(first.tolist(), PartCorrection("file"))
-    correct(session, replace(session.state.corrections, parts=parts))
+def uses_file(session: Session) -> bool:
+    """Return whether every part of the mesh has the file's weights."""
+    state, parts = session.state, session.state.corrections.parts
+    expected = set(parts) if state.graph is None else set(_first_vertices(session))
+    return bool(parts) and expected <= {v for v, part in parts.items() if part.how == "file"}
+
+
+def choose_file(session: Session, from_file: bool) -> None:
+    """Give every part of the mesh the file's weights, to correct these, or compute all again."""
+    corrections = session.state.corrections
+    if from_file:
+        corrections = with_file_parts(session)
+    else:
+        parts = {v: part for v, part in corrections.parts.items() if part.how != "file"}
+        corrections = replace(corrections, parts=parts)
+    correct(session, corrections)
+
+
+def with_file_parts(session: Session) -> Corrections:
+    """Return the corrections with the file's weights for every part of the mesh."""
+    parts = dict.fromkeys(_first_vertices(session), PartCorrection("file"))
+    return replace(session.state.corrections, parts=parts)
+
+
+def _first_vertices(session: Session) -> list[int]:
+    """Return the first vertex of each connected component of the mesh."""
+    graph = session.state.graph
+
+    def find() -> list[int]:
+        component = SurfaceOperators.of(graph).component[graph.vertex_node]
+        first: list[int] = np.unique(component, return_index=True)[1].tolist()
+        return first
+
+    vertices: list[int] = session.memo("first vertices", (graph,), find)
+    return vertices
 
 
 def keep_file_vertices(session: Session, vertices: NDArray[np.intp]) -> None:

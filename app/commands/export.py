@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import cutcell
 from cutcell.io import binary_ending
 from cutcell.rig import Clip
 from cutcell.runtime.progress import Progress
@@ -19,6 +18,7 @@ from cutcell_viewers.film import FRAMES, Order
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at, swing
 from cutcell_viewers.worker import draw_apart
 
+from ..files.bound_file import save_bound
 from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
 from ..files.table_export import save_numbers, settings_of
@@ -28,6 +28,7 @@ from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..scenes.sweep import sweep_of, sweep_scenes
 from ..state import State
+from .export_queue import proceed, when_ready
 from .session import Session
 
 Done = Callable[[str, bytes], None]
@@ -77,6 +78,17 @@ class Seen:
         return Order(description, theme, size, self.camera, page_height=self.height)
 
 
+def queued(export: Callable[..., None]) -> Callable[..., None]:
+    """Let an export wait until the page has the weights of the settings that it shows."""
+
+    @wraps(export)
+    def export_later(session: Session, *arguments: Any, **options: Any) -> None:
+        when_ready(session, lambda: export(session, *arguments, **options))
+
+    return export_later
+
+
+@queued
 def export_picture(session: Session, done: Done) -> None:
     """Draw what is seen, large and with its legend, and hand over the PNG."""
     _draw(
@@ -87,6 +99,7 @@ def export_picture(session: Session, done: Done) -> None:
     )
 
 
+@queued
 def export_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
 
@@ -96,6 +109,7 @@ def export_turntable(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
+@queued
 def export_motion(session: Session, ending: str, done: Done) -> None:
     """Film the motion that is chosen, as what is seen now goes through it."""
     if session.state.weights is None:
@@ -112,6 +126,7 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
+@queued
 def export_sweep(session: Session, ending: str, done: Done) -> None:
     """Film the wavefront where it is shown, else the cut, as it runs from 0 to 1."""
     name, rate = sweep_of(session.state), FRAMES[f".{ending}"]
@@ -126,6 +141,7 @@ def export_sweep(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
+@queued
 def export_interactive(session: Session, page: Callable[..., str], done: Done) -> None:
     """Write the character as an interactive page that needs no server, and hand over the HTML.
 
@@ -144,6 +160,7 @@ def export_interactive(session: Session, page: Callable[..., str], done: Done) -
     _hand_over(session, f"{_stem(session)}.html", write, done)
 
 
+@queued
 def export_numbers(session: Session, what: str, ending: str, done: Done) -> None:
     """Hand over "weights", "distances" or "all" as numbers, in a "csv" or "npz"."""
     binding, rig = session.state.binding, session.state.rig
@@ -167,6 +184,7 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
     _hand_over(session, name, write, done)
 
 
+@queued
 def export_graph(session: Session, ending: str, done: Done) -> None:
     """Hand over the graph's nodes and edges as numbers, in a "zip" of tables or an "npz"."""
     graph = session.state.graph
@@ -181,6 +199,7 @@ def export_graph(session: Session, ending: str, done: Done) -> None:
     _hand_over(session, f"{_stem(session)}-graph.{ending}", write, done)
 
 
+@queued
 def export_bound(session: Session, done: Done) -> None:
     """Write the character with its new weights, and hand over its name and content."""
     state = session.state
@@ -188,23 +207,13 @@ def export_bound(session: Session, done: Done) -> None:
         state.message = ("info", "There are no weights to download yet.")
         return
     rig = state.rig.with_weights(state.binding.weights)
+    settings = settings_of(state.binding)
 
     def write(path: Path, progress: Progress) -> None:
         check = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, check=check, ended=ENDED)
+        in_process(save_bound, path, rig, settings, check=check, ended=ENDED)
 
     _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
-
-
-def export_repaired(session: Session, done: Done) -> None:
-    """Write the repaired character with its own weights, and hand over its name and content."""
-    rig = session.state.rig
-
-    def write(path: Path, progress: Progress) -> None:
-        check = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, check=check, ended=ENDED)
-
-    _hand_over(session, f"{_stem(session)}-repaired{binary_ending(rig)}", write, done)
 
 
 def chosen_clip(state: State) -> Clip:
@@ -255,7 +264,14 @@ def _hand_over(
             write(path, progress)
             return path.read_bytes()
 
-    session.start(work, lambda content: done(name, content), slots)
+    def next_export() -> None:
+        session.tasks.later(lambda: proceed(session))
+
+    def finish(content: bytes) -> None:
+        next_export()
+        done(name, content)
+
+    session.start(work, finish, slots, next_export, "export")
 
 
 def _stem(session: Session) -> str:

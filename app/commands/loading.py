@@ -20,7 +20,7 @@ from ..jobs.jobs import READING
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
 from ..state.url import first_clip
 from . import history
-from .binding import bind, restore
+from .binding import bind, restore, resume
 from .compare import carry
 from .correct import corrected_state
 from .look import set_camera
@@ -197,7 +197,8 @@ def show_rig(
         eye, target = arrival["camera"][:3], arrival["camera"][3:]
         set_camera(session, Camera(tuple(eye), tuple(target)))
     history.begin(session, old)
-    bind(session)
+    session.drop_exports()
+    bind(session, state.message)
 
 
 def _load(
@@ -221,7 +222,11 @@ def _load(
         show_rig(session, rig, chosen, character)
         then()
 
-    session.start(work, done, READING, failed)
+    def went_wrong() -> None:
+        failed()
+        resume(session)
+
+    session.start(work, done, READING, went_wrong)
 
 
 def _correct(session: Session, text: str) -> None:

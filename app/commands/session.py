@@ -90,6 +90,8 @@ class Session:
     binder : Binder
     kept : CorrectionsFile
         Corrections that are too long for the address.
+    exports : list of callable
+        Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:
@@ -107,6 +109,8 @@ class Session:
         self.arrival: dict[str, Any] = {}
         self.binder = Binder()
         self.kept = CorrectionsFile(self.uploads)
+        self.exports: list[Callable[[], None]] = []
+        self._progress: dict[str, tuple[str, float]] = {}
         self._folder: Path | None = None
 
     def start(
@@ -115,27 +119,58 @@ class Session:
         done: Callable[[Any], None],
         slots: Slots = COMPUTING,
         failed: Callable[[], None] = lambda: None,
+        name: str = "main",
     ) -> None:
-        """Do some work that the page shows progress of; it stops what went on before.
+        """Do some work that the page shows progress of; it stops earlier work of the same name.
 
         An error is reported, and then `failed` is called.
         """
-        state, jobs = self.state, self.tasks.jobs("main")
+        jobs = self.tasks.jobs(name)
 
         def finish(result: Any) -> None:
-            state.busy = jobs.running
+            if not jobs.running:
+                self.ended(name)
             done(result)
 
         def went_wrong(error: Exception) -> None:
-            state.busy = False
+            self.ended(name)
             self.fail(error)
             failed()
 
         def report(stage: str, fraction: float) -> None:
-            state.param.update(stage=stage, fraction=fraction)
+            self.report(name, stage, fraction)
 
-        state.param.update(busy=True, stage="", fraction=0.0)
+        report("", 0.0)
         jobs.start(work, finish, went_wrong, report, slots)
+
+    def report(self, name: str, stage: str, fraction: float) -> None:
+        """Show progress of work."""
+        self._progress[name] = (stage, fraction)
+        self._show_progress()
+
+    def ended(self, name: str) -> None:
+        """Show that work has ended."""
+        self._progress.pop(name, None)
+        self._show_progress()
+
+    def _show_progress(self) -> None:
+        shown = self._progress.get("main") or self._progress.get("export")
+        stage, fraction = shown or (self.state.stage, self.state.fraction)
+        self.state.param.update(
+            busy=bool(shown),
+            stage=stage,
+            fraction=fraction,
+            exporting=self._progress.get("export", ("",))[0] if "main" in self._progress else "",
+        )
+
+    def drop_exports(self) -> None:
+        """Drop exports that wait, and add that to the message."""
+        if self.exports:
+            self.exports.clear()
+            if not self.tasks.jobs("export").running:
+                self.ended("export")
+            severity, text = self.state.message or ("info", "")
+            self.state.message = (severity, f"{text} Nothing was exported.".strip())
 
     def fail(self, error: Exception) -> None:
         """Show an error; the page is unchanged."""

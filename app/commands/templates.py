@@ -10,6 +10,7 @@ from cutcell.runtime.progress import Progress
 from cutcell.templates import Template, fit_skeleton, names_of
 
 from ..scenes.common import first_joint
+from .binding import resume
 from .correct import corrected_state
 from .moving import rounded
 from .session import Session
@@ -36,7 +37,7 @@ def fit(session: Session, template: Template) -> None:
             }
         )
 
-    session.start(work, done)
+    session.start(work, done, failed=lambda: resume(session))
 
 
 def take_out(session: Session) -> None:

@@ -9,6 +9,7 @@ from . import (
     cutting,
     distance,
     explain,
+    export_queue,
     history,
     idle,
     keys,
@@ -26,5 +27,5 @@ def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
     watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs, rendered)
-    for one in (*watched, binding, explain, history, keys, idle, check, arrival):
+    for one in (*watched, binding, export_queue, explain, history, keys, idle, check, arrival):
         one.watch(session)

@@ -1,6 +1,12 @@
 // Names for parts that the widget library leaves without one for screen readers.
 
+import {SEARCH, focusSearch} from "./menus.js"
+
 const UNNAMED = [
+  [`${SEARCH}:not([aria-label])`, focusSearch],
+  [".MuiMenu-list .MuiInputAdornment-root button:not([aria-label])", (part) => {
+    part.setAttribute("aria-label", "Clear search and close")
+  }],
   ["[role=progressbar]:not([aria-label])", (part) => part.setAttribute("aria-label", "Progress")],
   [".MuiInputAdornment-root button:not([aria-label])", (part) => {
     const both = [...part.closest(".MuiInputBase-root").querySelectorAll("button")]

@@ -64,6 +64,10 @@ class Tasks:
         timer.daemon = True
         timer.start()
 
+    def is_due(self, name: str) -> bool:
+        """Return whether an action waits for a pause."""
+        return name in self._due
+
     def jobs(self, name: str) -> Jobs:
         """Return the work of one name: a newer piece of it stops the one before."""
         if name not in self._jobs:

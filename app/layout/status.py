@@ -61,7 +61,11 @@ def status_line(session: Session) -> pmui.Row:
         sizing_mode="stretch_width",
     )
     stage = text_line(
-        when(stage_text, state.param.stage),
+        when(
+            progress_text,
+            state.param.stage,
+            state.param.exporting,
+        ),
         visible=state.param.busy,
         sx={**small, **_ONE_LINE, "minWidth": "150px", "maxWidth": "46vw"},
         margin=(10, 8, 10, 16),
@@ -164,6 +168,12 @@ def warning(state: State) -> tuple[str, str] | None:
 def stage_text(stage: str) -> str:
     """Return the text of a stage for people."""
     return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
+
+
+def progress_text(stage: str, exporting: str) -> str:
+    """Return the text of what is computed, and of an export that waits or is written meanwhile."""
+    text = stage_text(stage)
+    return f"{text} · Export: {exporting}" if exporting else text
 
 
 def _counts(rig: Rig) -> str:

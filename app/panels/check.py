@@ -16,7 +16,6 @@ from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..commands.check import look_at, repair, take_back
 from ..commands.correct import correct_part, keep_file_vertices, leave_out, lock
-from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
 from ..state.check import EXPORT
@@ -231,11 +230,6 @@ def _repairs(session: Session) -> list[Any]:
         *rows,
         _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
-        button(
-            "Download with original weights",
-            lambda: export_repaired(session, session.view.offer),
-            icon="download",
-        ),
         button("Undo repair", lambda: take_back(session), icon="undo"),
     ]
 

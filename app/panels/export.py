@@ -2,19 +2,39 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
+from numpy.typing import NDArray
 
+from cutcell.diagnosis.finding import count
+from cutcell.editing.binding_warnings import SAME
 from cutcell.editing.corrections import Corrections
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 
+from ..commands import correct
 from ..commands import export as actions
 from ..commands.session import Session
 from ..standalone.page import VIEWS, interactive_page
 from ..state import State
-from .controls import BESIDE, button, caption, folded, menu, row, when
+from .controls import (
+    BESIDE,
+    BUTTONS,
+    as_text,
+    button,
+    caption,
+    folded,
+    has_weights,
+    menu,
+    row,
+    when,
+)
+
+WHOSE = {"My weights": True, "Recomputed": False}
+"""The file's weights, with what was repaired and painted, or computed ones."""
 
 
 def export(session: Session) -> pmui.Column:
@@ -44,9 +64,12 @@ def export(session: Session) -> pmui.Column:
         "Nodes and edges of the graph (CSV)": lambda: actions.export_graph(session, "zip", offer),
         "Nodes and edges of the graph (NPZ)": lambda: actions.export_graph(session, "npz", offer),
     }
+    whose, changed = _whose(session)
     empty = when(lambda rig: rig is None, state.param.rig)
     return folded(
         "Export",
+        whose,
+        changed,
         bound,
         row(
             menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
@@ -54,6 +77,67 @@ def export(session: Session) -> pmui.Column:
         ),
         caption(when(_described, state.param.rig, state.param.corrections, state.param.repair)),
     )
+
+
+def _whose(session: Session) -> tuple[pmui.RadioButtonGroup, pmui.Typography]:
+    """Return the choice of the weights that are shown and exported, and what is changed in them."""
+    state = session.state
+    whose = pmui.RadioButtonGroup(options=WHOSE, **BUTTONS)
+    changed = caption()
+
+    def show(*events: Any) -> None:
+        ready = has_weights(state.rig) and not state.bare
+        whose.param.update(
+            value=correct.uses_file(session), visible=ready, disabled=state.graph is None
+        )
+
+    def describe() -> None:
+        changed.object = as_text(changes_of(state))
+
+    def chosen(event: Any) -> None:
+        if event.new != correct.uses_file(session):
+            correct.choose_file(session, event.new)
+
+    state.param.watch(show, ["rig", "binding", "corrections"])
+    # The colours go first.
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(describe, "changed"),
+        ["rig", "binding", "repair"],
+    )
+    whose.param.watch(chosen, "value")
+    show()
+    describe()
+    return whose, changed
+
+
+def changes_of(state: State) -> str:
+    """Return what of the weights that are exported differs from the file, in a line."""
+    rig, binding = state.rig, state.binding
+    if binding is None:
+        return ""
+    file_weights = rig.weights if state.repair is None else state.repair.before.weights
+    if file_weights is None or file_weights.shape != binding.weights.shape:
+        return "Computed weights."
+    differs = _rows_differ(binding.weights, file_weights)
+    if not differs.any():
+        return "The file's weights, unchanged."
+    painted = np.zeros(len(differs), bool)
+    painted[list(state.corrections.vertices)] = True
+    repaired = ~painted & _rows_differ(binding.weights, file_weights)
+    repaired = ~painted & ~_rows_differ(binding.weights, rig.weights)
+    kinds = {
+        "repaired": differs & repaired,
+        "painted": differs & painted,
+        "recomputed": differs & ~painted & ~repaired,
+    }
+    counts = [f"{rows.sum():,} {kind}" for kind, rows in kinds.items() if rows.any()]
+    return f"{count(int(differs.sum()), 'vertex')} changed: {', '.join(counts)}."
+
+
+def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
+    """Return the vertices with other weights; one, other (n, j)."""
+    differs: NDArray[np.bool_] = np.abs(one - other).max(axis=1, initial=0) > SAME
+    return differs
 
 
 def page(state: State) -> Callable[..., str]:

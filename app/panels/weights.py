@@ -5,16 +5,13 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
-from cutcell.editing.binding_warnings import SAME
 from cutcell.method import FALLOFFS
 
-from ..commands.correct import keep_file_parts
 from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
 from .controls import (
-    button,
     caption,
     choice,
     column,
@@ -25,7 +22,6 @@ from .controls import (
     section,
     select_box,
     slider,
-    text_line,
     when,
 )
 from .corrections import corrections
@@ -41,7 +37,6 @@ DIFFERENCE = {
     "Difference from the file's": "difference",
     "Difference of the selected bone": "bone_difference",
 }
-SOURCE = {"fontSize": 13, "fontWeight": 600}
 FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 
 
@@ -56,10 +51,9 @@ def weights(session: Session) -> pmui.Column:
 
     follow(select, state, "weights_shown", offered, ["rig"])
     facts = caption(summary(state))
-    source = text_line(exported(state), sx=SOURCE, margin=(8, 0, 0, 0))
 
     def update() -> None:
-        facts.object, source.object = summary(state), exported(state)
+        facts.object = summary(state)
 
     # The colours go first.
     state.param.watch(
@@ -67,9 +61,7 @@ def weights(session: Session) -> pmui.Column:
     )
     return column(
         intro("How strongly each bone moves the skin."),
-        section(
-            "", source, _from_file(session), select, *_sides(state), facts, margin=(0, 20, 4, 20)
-        ),
+        section("", select, *_sides(state), facts, margin=(0, 20, 4, 20)),
         brush(session),
         joints(session),
         folded("Falloff", *_falloff(state)),
@@ -78,36 +70,9 @@ def weights(session: Session) -> pmui.Column:
     )
 
 
-def _from_file(session: Session) -> pmui.Button:
-    """Return the button that starts from the file's weights."""
-    rig, binding = session.state.param.rig, session.state.param.binding
-    return button(
-        "Start from the file's weights",
-        lambda: keep_file_parts(session),
-        icon="history",
-        variant="text",
-        visible=when(lambda rig, bound: has_weights(rig) and bound is not None, rig, binding),
-    )
-
-
-def exported(state: State) -> str:
-    """Return which weights an exported file contains."""
-    if state.binding is None:
-        return ""
-    if not has_weights(state.rig):
-        return "Export: computed weights."
-    differs = np.abs(state.binding.weights - state.rig.weights).max(axis=1, initial=0) > SAME
-    if not differs.any():
-        return "Export: the file's weights."
-    as_in_file = 1 - differs.mean()
-    if as_in_file < 0.005 or not state.corrections:
-        return "Export: recomputed weights."
-    return f"Export: recomputed weights, the file's at {as_in_file:.0%} of the vertices."
-
-
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Recomputed": "ours", "Original": "file"}
+    names = {"Current": "ours", "Original": "file"}
     whose = choice(
         state.param.weights_of,
         names,

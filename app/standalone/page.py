@@ -32,6 +32,7 @@ from cutcell_viewers.palette import THEMES, to_hex
 from cutcell_viewers.skin import skin_of_weights
 from cutcell_viewers.weights_scene import MIXED
 
+from ..files.table_export import settings_of
 from ..scenes import Memo, following, resolve
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint, theme_part
 from ..scenes.facts import MAX_DISTANCES, MAX_WEIGHTS, components
@@ -85,6 +86,7 @@ def interactive_page(
     packed = Packed()
     scenes = packed.plain(_record(rig, binding, progress))
     scenes |= {"view": view, "joint": first_joint(rig) if joint is None else joint}
+    scenes["settings"] = settings_of(binding)
     template = Template((FOLDER / "standalone.html").read_text(encoding="utf-8"))
     return template.substitute(
         title=html.escape(shown_name(rig.name) or "character"),

@@ -53,6 +53,7 @@ class Common(param.Parameterized):
     busy = param.Boolean(False, doc="Whether something is being computed.")
     stage = param.String("", doc="What is being computed.")
     fraction = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
+    exporting = param.String("", doc="Stage of an export while something else is computed.")
     message: Any = param.Parameter(None, doc="(severity, sentence) to show, or None.")
 
     @property
@@ -79,6 +80,6 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
-                    "own", "tier", "rendered"})  # fmt: skip
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "exporting",
+                    "message",                    "own", "tier", "rendered"})  # fmt: skip
 """Choices that the scene does not depend on."""

@@ -15,7 +15,7 @@ from cutcell_app.commands import arrival, correct, keys, loading, look, moving, 
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
-from cutcell_app.panels.weights import exported
+from cutcell_app.panels.export import changes_of, export
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.scenes.warnings import warnings
@@ -155,15 +155,39 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
 
 
 def test_all_parts_start_from_the_files_weights(bound, loop):
-    assert "recomputed" in exported(bound.state)
-    correct.keep_file_parts(bound)
+    computed = bound.state.binding.weights
+    assert "recomputed" in changes_of(bound.state)
+    assert not correct.uses_file(bound)
+    correct.choose_file(bound, True)
     settled(bound, loop)
+    assert correct.uses_file(bound)
     np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
     the_same_as_bind(bound)
-    assert "recomputed" not in exported(bound.state)
+    assert "recomputed" not in changes_of(bound.state)
+    correct.choose_file(bound, False)
+    settled(bound, loop)
+    np.testing.assert_allclose(bound.state.binding.weights, computed)
     loading.show_rig(bound, arm_rig().with_weights(None))
     loop.run_until(lambda: bound.state.binding is not None)
-    assert "file's" not in exported(bound.state)
+    assert "file's" not in changes_of(bound.state)
+
+
+def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
+    (whose,) = export(bound).select(pmui.RadioButtonGroup)
+    assert (whose.value, whose.visible, whose.disabled) == (False, True, False)
+    whose.value = True
+    settled(bound, loop)
+    assert correct.uses_file(bound)
+    correct.overrule(bound, 3, {2: 1.0})
+    settled(bound, loop)
+    together = len(bound.state.corrections.vertices)
+    assert changes_of(bound.state).endswith(f"changed: {together} painted.")
+    assert whose.value is True
+    correct.clear(bound)
+    settled(bound, loop)
+    assert whose.value is False
+    loading.show_rig(bound, arm_rig().with_weights(None))
+    assert not whose.visible
 
 
 def test_single_vertices_get_the_files_weights(bound, loop):

@@ -12,10 +12,13 @@ from cutcell.diagnosis import Diagnosis, Finding
 from cutcell.diagnosis.repair import WEIGHTS
 from cutcell.rig import TriangleMesh
 from cutcell_app.commands import loading
+from cutcell_app.commands.binding import is_current
 from cutcell_app.commands.check import look_at, repair, take_back
-from cutcell_app.commands.export import export_repaired
+from cutcell_app.commands.correct import choose_file, uses_file
+from cutcell_app.commands.export import export_bound
 from cutcell_app.panels.character import faults
 from cutcell_app.panels.check import check, summary
+from cutcell_app.panels.export import changes_of
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state import State
@@ -109,17 +112,24 @@ def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
     assert len(codes(spoiled)) == 2
 
 
-def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
-    offered = []
+def test_what_was_repaired_is_exported(spoiled, loop, tmp_path):
+    offered, state = [], spoiled.state
     repair(spoiled, ["inverted-faces", "unweighted-vertices"])
-    loop.run_until(lambda: spoiled.state.repair is not None and spoiled.state.binding is not None)
-    export_repaired(spoiled, lambda *args: offered.append(args))
+    loop.run_until(lambda: state.repair is not None)
+    export_bound(spoiled, lambda *args: offered.append(args))
     loop.run_until(lambda: offered)
     name, content = offered[0]
-    assert name == "arm-repaired.glb"
+    assert name == "arm-bound.glb"
     (tmp_path / name).write_bytes(content)
     again = cutcell.load(tmp_path / name)
     assert cutcell.diagnose(again, 16).findings == ()
+    changed = np.abs(again.weights - state.repair.before.weights).max(axis=1) > 1e-6
+    assert np.flatnonzero(changed).tolist() == [0, 1, 2]
+    assert uses_file(spoiled)
+    assert "3 repaired" in changes_of(state)
+    choose_file(spoiled, False)
+    loop.run_until(lambda: is_current(spoiled))
+    assert "recomputed" in changes_of(state)
 
 
 def test_another_character_begins_anew(spoiled, loop):

@@ -193,7 +193,7 @@ def killed(*given):
 
 
 WRITERS = {
-    "file": ("cutcell.save", export_bound),
+    "file": ("cutcell_app.commands.export.save_bound", export_bound),
     "numbers": ("cutcell_app.commands.export.save_numbers", partial(export_numbers, what="all")),
 }
 
@@ -216,7 +216,7 @@ def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypat
 
 
 def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
-    monkeypatch.setattr("cutcell.save", killed)
+    monkeypatch.setattr("cutcell_app.commands.export.save_bound", killed)
     export_bound(bound, lambda name, content: pytest.fail("it crashed"))
     loop.run_until(lambda: not bound.state.busy)
     assert "Writing it came to a sudden end" in bound.state.message[1]

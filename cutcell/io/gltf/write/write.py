@@ -37,6 +37,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     _check_same(rig, source)
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
     _rename(document, rig)
+    _forget_settings(document)
     faces = take_faces(document, rig)
     dropped = [accessor for new in faces for accessor in new.old.values()]
     parts, moves = take_structure(document, rig, take_moves(document, rig))
@@ -82,6 +83,13 @@ def _rename(document: dict[str, Any], rig: Rig) -> None:
         was = j if origin is None else int(origin[j])
         if was >= 0 and name != source.skeleton.names[was]:
             document["nodes"][source.nodes[was]]["name"] = name
+
+
+def _forget_settings(document: dict[str, Any]) -> None:
+    """Remove the settings of other weights, which the page writes into a file."""
+    extras = document["asset"].get("extras")
+    if isinstance(extras, dict):
+        extras.pop("cutcell", None)
 
 
 class _ChangedPart(NamedTuple):
