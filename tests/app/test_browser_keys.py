@@ -19,8 +19,10 @@ IS_SEARCH = f"() => {{ {ACTIVE} return active.matches('.MuiMenu-list input') }}"
 MISSED = """() => {
   const roots = [document], missed = []
   for (let root; root = roots.pop();) {
-    for (const one of root.querySelectorAll("*")) { if (one.shadowRoot) { roots.push(one.shadowRoot) } }
-    const wanted = "button, input, textarea, [role=combobox], [role=tab], [role=slider], [role=tree]"
+    for (const one of root.querySelectorAll("*")) {
+      if (one.shadowRoot) { roots.push(one.shadowRoot) }
+    }
+    const wanted = "button, input, textarea, [role=combobox], [role=tab], [role=tree]"
     for (const one of root.querySelectorAll(wanted)) {
       const group = one.closest("[role=tablist], [role=tree], [role=toolbar], [role=listbox]")
       const reached = "reached" in one.dataset || group?.querySelector("[data-reached]")

@@ -14,8 +14,8 @@ from cutcell.rig.deform_joints import deform_joints
 from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
-from cutcell_app.panels.joints import joints
 from cutcell_app.panels.export import changes_of, export
+from cutcell_app.panels.joints import joints
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.scenes.warnings import warnings
