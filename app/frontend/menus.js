@@ -14,8 +14,15 @@ function press(event) {
   if (act) {
     event.preventDefault()
     event.stopImmediatePropagation()
+    // Where the key is let go, the menu is open: the space would choose what has the focus there.
+    if (event.key === " ") { addEventListener("keyup", swallow, {capture: true, once: true}) }
     act(target)
   }
+}
+
+function swallow(event) {
+  event.preventDefault()
+  event.stopImmediatePropagation()
 }
 
 // The item that contains the search field is none to choose.
@@ -33,15 +40,22 @@ function match(search) {
 const ACTS = {
   Enter: (search) => match(search)?.click(),
   Escape: (search) => search.closest(".MuiInputBase-root").querySelector("button").click(),
-  ArrowDown: (search) => match(search)?.focus(),
+  ArrowDown: (search) => {
+    search.closest(".MuiMenu-list").removeEventListener("focusin", refocus)
+    match(search)?.focus()
+  },
 }
 
 // A search field has the focus when its menu opens: the library gives it to an item a moment later.
 export function focusSearch(search) {
   search.setAttribute("aria-label", "Search")
-  const focus = () => { search.focus({preventScroll: true}); search.select() }
-  focus()
-  search.closest(".MuiMenu-list").addEventListener("focusin", focus, {once: true})
+  search.focus({preventScroll: true})
+  search.select()
+  search.closest(".MuiMenu-list").addEventListener("focusin", refocus, {once: true})
+}
+
+function refocus(event) {
+  event.currentTarget.querySelector("input").focus({preventScroll: true})
 }
 
 addEventListener("keydown", press, true)
