@@ -130,8 +130,11 @@ def changes_of(state: State) -> str:
         "painted": differs & painted,
         "recomputed": differs & ~painted & ~repaired,
     }
-    counts = [f"{rows.sum():,} {kind}" for kind, rows in kinds.items() if rows.any()]
-    return f"{count(int(differs.sum()), 'vertex')} changed: {', '.join(counts)}."
+    total = count(int(differs.sum()), "vertex")
+    counts = {kind: int(rows.sum()) for kind, rows in kinds.items() if rows.any()}
+    if len(counts) == 1:
+        return f"{total} {next(iter(counts))}."
+    return f"{total}: {', '.join(f'{number:,} {kind}' for kind, number in counts.items())}."
 
 
 def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:

@@ -9,6 +9,7 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
+from cutcell.diagnosis.finding import count
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
@@ -181,7 +182,7 @@ def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
     correct.overrule(bound, 3, {2: 1.0})
     settled(bound, loop)
     together = len(bound.state.corrections.vertices)
-    assert changes_of(bound.state).endswith(f"changed: {together} painted.")
+    assert changes_of(bound.state) == f"{count(together, 'vertex')} painted."
     assert whose.value is True
     correct.clear(bound)
     settled(bound, loop)
