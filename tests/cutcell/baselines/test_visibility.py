@@ -3,11 +3,14 @@
 import networkx
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
+from cutcell.baselines.visibility import Blockers
 from cutcell.baselines.visible_geodesics import APART, over_surface, visible
+from cutcell.geometry.edges import find_edges
 from tests import meshes
 from tests.bars import bar, check_weights, fork, grid_box
 
@@ -60,6 +63,30 @@ def slow_distances(body, reach):
             last = min(straight[s] for s in seen if away[s] <= least + 1e-12)
             row[v] = straight[v] if v in seen else least + last
     return found
+
+
+def turned(vertices, seed):
+    """Rotate a mesh at random."""
+    return vertices @ Rotation.random(rng=seed).as_matrix().T
+
+
+@pytest.mark.parametrize("seed", [None, 0, 1])
+@pytest.mark.parametrize("make", [lambda: grid_box(6), meshes.ball])
+def test_no_segment_passes_between_triangles(make, seed):
+    """Aim from outside into a closed body: through its vertices, middles and points of edges."""
+    vertices, faces = make()
+    vertices = vertices - vertices.mean(axis=0)
+    if seed is not None:
+        vertices = turned(vertices, seed)
+    rng = np.random.default_rng(0)
+    a, b = vertices[find_edges(faces).edges.T]
+    share = rng.random((len(a), 1))
+    through = np.concatenate([vertices, (a + b) / 2, a + share * (b - a)])
+    inside = 0.3 * vertices[rng.integers(0, len(vertices), len(through))]
+    outside = through + (through - inside) * rng.choice([0.5, 1.0, 3.0], (len(through), 1))
+    blockers = Blockers(np.concatenate([vertices, outside]), faces)
+    first = len(vertices) + np.arange(len(outside))
+    assert blockers.blocked(first, inside).all()
 
 
 @pytest.mark.parametrize("make", [meshes.ball, lambda: grid_box(12)])
