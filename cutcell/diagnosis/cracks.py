@@ -64,7 +64,7 @@ def _normals(
     """Return the unit normals of the faces that sides of rims belong to."""
     faces, points = subject.graph.faces[subject.whole], subject.points
     sides = faces.astype(np.int64) * len(points) + np.roll(faces, -1, axis=1)
-    order = np.argsort(sides, axis=None)
+    order = np.argsort(sides, axis=None, kind="stable")
     keys = start * len(points) + end
     side_faces = order[np.searchsorted(sides.ravel(), keys, sorter=order)] // 3
     return unit_normals(points[faces[side_faces]])

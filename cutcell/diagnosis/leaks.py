@@ -71,7 +71,7 @@ def _stray(
         details=tuple(
             f"{shown_name(names[j])}: {100 * shares[j]:.2g}% of the weight, nearest to "
             f"{share(owned[j], 1)} of the surface"
-            for j in stray[np.argsort(-owned[stray])][:MAX_LINES]
+            for j in stray[np.argsort(-owned[stray], kind="stable")][:MAX_LINES]
         ),
         pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
     )

@@ -97,7 +97,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
 
 def _median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
     """Return the median of values that count by their weights."""
-    order = np.argsort(values)
+    order = np.argsort(values, kind="stable")
     total = np.cumsum(weights[order])
     return float(values[order[np.searchsorted(total, total[-1] / 2)]])
 

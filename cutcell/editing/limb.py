@@ -48,7 +48,7 @@ def cross_section_centre(rig: Rig, joint: int) -> NDArray[np.float64]:
     place, out = rig.skeleton.joints[joint], _along(rig.skeleton, joint)
     side = np.cross(out, np.eye(3)[np.abs(out).argmin()])
     plane = np.stack([side, np.cross(out, side)]) / np.linalg.norm(side)
-    start, end = _section(rig.mesh.vertices[rig.mesh.faces] - place, out, plane)
+    start, end = _section(rig.mesh.vertices - place, rig.mesh.faces, out, plane)
     middle, most = np.zeros(2), np.inf
     inside = bool(winding_number(rig.mesh, place[None])[0] > 0.5)
     for _ in range(ROUNDS):
@@ -83,21 +83,34 @@ def _along(skeleton: Skeleton, joint: int) -> NDArray[np.float64]:
 
 
 def _section(
-    corners: NDArray[np.float64], out: NDArray[np.float64], plane: NDArray[np.float64]
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    out: NDArray[np.float64],
+    plane: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Cut triangles (m, 3, 3) by the plane through 0; return segments in it, (s, 2) each."""
-    above = corners @ out
+    """Cut faces (m, 3) by the plane through 0; return segments in it, (s, 2) each.
+
+    Segments that share an end have the same numbers for it, so that nothing passes between them.
+    """
+    above = (points @ out)[faces]
     crossed = np.flatnonzero((above.min(axis=1) < 0) & (above.max(axis=1) >= 0))
-    corners, above = corners[crossed], above[crossed]
+    corners, above = points[faces[crossed]], above[crossed]
     # Rolled so that the first corner is alone on its side.
     sides = above >= 0
     alone = np.where(sides.sum(axis=1) == 1, sides.argmax(axis=1), (~sides).argmax(axis=1))
     order = (alone[:, None] + np.arange(3)) % 3
     corners = np.take_along_axis(corners, order[..., None], axis=1)
     above = np.take_along_axis(above, order, axis=1)
-    share = above[:, :1] / (above[:, :1] - above[:, 1:])
-    points = corners[:, :1] + share[..., None] * (corners[:, 1:] - corners[:, :1])
-    flat = points @ plane.T
+    # Both faces of an edge begin at its upper end.
+    from_alone = above[:, :1] >= 0
+    upper, lower = (
+        np.where(choice[..., None], corners[:, :1], corners[:, 1:])
+        for choice in (from_alone, ~from_alone)
+    )
+    high = np.where(from_alone, above[:, :1], above[:, 1:])
+    share = high / np.abs(above[:, :1] - above[:, 1:])
+    crossing = upper + share[..., None] * (lower - upper)
+    flat = np.stack([(crossing * axis).sum(axis=2) for axis in plane], axis=2)
     return flat[:, 0], flat[:, 1]
 
 
@@ -105,12 +118,11 @@ def _visible_section(start: NDArray[np.float64], end: NDArray[np.float64]) -> ND
     """Return the nearest points of segments (s, 2) in each direction from 0, as far as any is."""
     angle = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    edge = end - start
-    facing = _cross(direction[:, None], edge)
+    before, after = _cross(direction[:, None], start), _cross(direction[:, None], end)
     with np.errstate(divide="ignore", invalid="ignore"):
-        far = _cross(start, edge) / facing
-        share = _cross(start, direction[:, None]) / facing
-    far = np.where((far > 0) & (share >= 0) & (share <= 1), far, np.inf).min(axis=1, initial=np.inf)
+        far = _cross(start, end) / (after - before)
+    passed = (before < 0) != (after < 0)
+    far = np.where(passed & (far > 0), far, np.inf).min(axis=1, initial=np.inf)
     hit = np.isfinite(far)
     if hit.any():
         far = np.minimum(far, FARTHEST * np.quantile(far[hit], 0.25))

@@ -55,9 +55,7 @@ def exposure(
     own_face = index[face]
 
     def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
-        rotated = [
-            np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)
-        ]
+        rotated = [_rotated(x, turn) for x in (vertices, points)]
         is_free = _escape(rotated[1], own_face, rotated[0], single)
         cosine = normals @ turn[2]
         weight, is_up = np.abs(cosine), cosine > 0
@@ -68,6 +66,12 @@ def exposure(
     front, back, every = np.sum(in_threads(along, _turns(), report), axis=0)
     every = np.maximum(every, 1e-300)
     return front / every, back / every
+
+
+def _rotated(points: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotate points (n, 3) in the unit cube; unlike BLAS, every processor rounds this alike."""
+    x, y, z = points.T - 0.5
+    return np.stack([a * x + b * y + c * z for a, b, c in turn], axis=1) / SHRINK + 0.5
 
 
 def _each_once(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
