@@ -10,6 +10,12 @@ SCRIPTS := app/frontend tests/app/frontend
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4
 
+# Results of these could depend on how a processor rounds.
+NUMERICAL := $(addprefix tests/cutcell/,baselines diagnosis editing geodesics geometry graph metrics \
+	pose rig templates weights test_bind.py)
+# All that numpy would use beyond its baseline.
+SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"]["found"])
+
 # As `cutcell` has it: idle threads of numpy's would take the cores from what is tested.
 export OPENBLAS_NUM_THREADS := 1
 
@@ -28,7 +34,7 @@ exit $$((tests ? tests : lint))
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help app test quick test-networks lint format assets docs lock clean
+.PHONY: help app test quick test-networks test-processors lint format assets docs lock clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
@@ -49,6 +55,13 @@ test-networks: $(VENV)/.networks $(VENV)/.tools ## Install torch, train a tiny n
 	@$(PYTHON) -m cutcell networks train test-output/networks --cache test-output/networks \
 		--head puppeteer --prior bind --data assets/biped.glb --data assets/robot.glb --epochs 20
 	@$(PYTHON) -m pytest $(ARGS) tests_networks
+
+test-processors: $(VENV)/.tools ## Run the numerical tests as older and newer processors round
+	@OPENBLAS_CORETYPE=Haswell NPY_DISABLE_CPU_FEATURES="$$($(PYTHON) -c '$(SIMD)')" \
+		$(PYTHON) -m pytest $(WORKERS) -m "not slow" $(ARGS) $(NUMERICAL)
+	@if grep -qw avx512f /proc/cpuinfo; then \
+		OPENBLAS_CORETYPE=SkylakeX $(PYTHON) -m pytest $(WORKERS) -m "not slow" $(ARGS) $(NUMERICAL); \
+	else echo "This processor has no AVX-512: its kernels are not tested."; fi
 
 lint: $(VENV)/.test ## Check style and types only
 	@$(LINT)
