@@ -22,9 +22,10 @@ from .editing.correct import (
 )
 from .editing.corrections import Corrections
 from .editing.refine import RefineOptions, check_refinement, refine_weights
-from .errors import ParameterError, SkeletonError
+from .errors import SkeletonError
 from .geodesics import BoneDistances, bone_distances
 from .graph import CutCellGraph, build_graph
+from .graph.fingerprint import graph_fingerprint, require_same
 from .graph.lattice import Lattice
 from .method import ANIMATION, Method, MethodName, Options, method_of
 from .rig import Rig
@@ -135,7 +136,7 @@ def bind(
     Raises
     ------
     ParameterError
-        A parameter is out of its range, or has no effect.
+        A parameter is out of its range, or has no effect; the graph is of another mesh or method.
     MeshError, SkeletonError, WeightsError
         The rig cannot be bound; the sentence says why.
 
@@ -156,7 +157,7 @@ def bind(
     refinement: RefineOptions = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
     _check(rig, method, refinement)
     if graph is not None:
-        _check_graph(graph, rig, method)
+        require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
     if not is_compiled():
         progress("compile", 0.0)
         warm_up()
@@ -221,28 +222,6 @@ def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
     check_refinement(rig, **refinement)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
-
-
-def _check_graph(graph: CutCellGraph, rig: Rig, method: Method) -> None:
-    """Refuse a graph that is not of this mesh by this method."""
-    for name, has, wanted in (
-        ("resolution", graph.lattice.resolution, method.resolution),
-        ("connectivity", graph.connectivity, method.connectivity),
-        ("winding_threshold", graph.winding_threshold, method.winding_threshold),
-    ):
-        if has != wanted:
-            raise ParameterError(
-                f"the graph was built with {name}={has!r}, the method has {wanted!r}; "
-                "leave the graph out, and it is built"
-            )
-    points = graph.lattice.to_file(graph.nodes)
-    count = len(rig.mesh.vertices)
-    if count != len(graph.vertex_node) or not np.allclose(
-        points[graph.vertex_node], rig.mesh.vertices, rtol=0, atol=1e-5 * graph.lattice.size
-    ):
-        raise ParameterError(
-            "the graph is of another mesh than the rig's; leave the graph out, and it is built"
-        )
 
 
 @contextmanager

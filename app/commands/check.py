@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
+from cutcell.geodesics import BoneDistances
+from cutcell.graph.fingerprint import skeleton_fingerprint
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
@@ -47,8 +49,7 @@ def examine(session: Session) -> None:
         return
     rig, resolution = state.rig, state.resolution
     binder.is_diagnosed = True
-    distances = None if state.binding is None else state.binding.distances
-    cached = distances if _is_standard(state) else None
+    cached = _reusable(state)
 
     def work(progress: Progress) -> Diagnosis:
         return diagnose(rig, resolution, distances=cached, progress=progress)
@@ -74,7 +75,7 @@ def examine_export(session: Session) -> None:
     last = state.export_diagnosis
     if last is not None and np.array_equal(last.rig.weights, rig.weights):
         return
-    distances = state.binding.distances if _is_standard(state) else None
+    distances = _reusable(state)
 
     def work(progress: Progress) -> Diagnosis:
         return diagnose(rig, resolution, distances=distances, only_weights=True, progress=progress)
@@ -85,9 +86,14 @@ def examine_export(session: Session) -> None:
     session.tasks.jobs("export check").start(work, done, session.fail, lambda stage, fraction: None)
 
 
-def _is_standard(state: Any) -> bool:
+def _reusable(state: Any) -> BoneDistances | None:
+    """Return the binding's distances if a diagnosis of the character would measure the same."""
     names = tuple(name for name in GRAPH if name != "resolution")
-    return method_of(type(state)(), names) == method_of(state, names)
+    if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
+        return None
+    distances: BoneDistances = state.binding.distances
+    of_rig = skeleton_fingerprint(state.rig.skeleton)
+    return distances if of_rig.items() <= distances.fingerprint.items() else None
 
 
 def look_at(session: Session, code: str) -> None:

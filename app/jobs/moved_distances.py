@@ -9,6 +9,7 @@ from cutcell.geodesics.any_angle.theta_star import ON_BONE
 from cutcell.geodesics.bones import Bones
 from cutcell.geodesics.distances import BoneDistances, bone_distances
 from cutcell.geodesics.fallback import REACHED
+from cutcell.graph.fingerprint import skeleton_fingerprint
 from cutcell.method import Method
 from cutcell.rig import Skeleton
 
@@ -73,7 +74,8 @@ class MovedDistances:
             at_welded=self._merged(joints, fresh),
             bones=bones,
             sources=distances.sources.replaced(is_moved, sources),
-        )
+            skeleton=skeleton,
+        ).identified({**distances.fingerprint, **skeleton_fingerprint(skeleton)})
 
     def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distances of all joints, from what was known and what was measured of some."""

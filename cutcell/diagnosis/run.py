@@ -8,6 +8,7 @@ from typing import Any
 
 from ..errors import CutcellError, ParameterError
 from ..geodesics import BoneDistances
+from ..graph.fingerprint import mesh_fingerprint, require_same, skeleton_fingerprint
 from ..method import check_resolution
 from ..rig import Rig
 from ..runtime.progress import Progress, silent
@@ -120,7 +121,8 @@ def diagnose(
     Raises
     ------
     ParameterError
-        `resolution` is not a whole number from 2 to 1024, or the graph would not fit in memory.
+        `resolution` is not a whole number from 2 to 1024, the graph would not fit in memory, or the
+        distances are of another rig or resolution.
     MeshError
         Every triangle of the mesh has collapsed into a point.
 
@@ -131,6 +133,9 @@ def diagnose(
     ...     print(finding.severity, finding.message)
     """
     resolution = check_resolution(resolution)
+    if distances is not None:
+        expected = mesh_fingerprint(rig.mesh) | skeleton_fingerprint(rig.skeleton)
+        require_same("distances", distances.fingerprint, expected | {"resolution": resolution})
     subject = Subject(rig, resolution, distances, progress=progress)
     findings: list[Finding] = []
     _ = subject.graph

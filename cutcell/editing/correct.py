@@ -41,7 +41,8 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     Raises
     ------
     ParameterError
-        A joint or a vertex that the rig does not have, or weights that its file cannot store.
+        A joint or a vertex that the rig does not have, weights that its file cannot store, or other
+        corrections of joints than those that were applied to the rig before.
     WeightsError
         A part is to keep weights that the file does not have.
     SkeletonError

@@ -18,6 +18,7 @@ from ..geodesics import (
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
 from ..graph import build_graph
+from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
 from ..rig.checks import check_integer
@@ -177,7 +178,8 @@ def explain(
     Raises
     ------
     ParameterError
-        There is no such vertex, or a parameter is out of its range.
+        There is no such vertex, a parameter is out of its range, or the distances are of another
+        rig or method.
     MeshError, SkeletonError
         The rig cannot be bound.
 
@@ -203,6 +205,10 @@ def explain(
             allowed=rig.allowed,
             progress=progress,
         )
+    else:
+        expected = graph_fingerprint(rig.mesh, method)
+        expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
+        require_same("distances", distances.fingerprint, expected)
     progress("weights", 0.0)
     context = weight_context(
         distances, method, rig.allowed, adjustments_of(rig, distances.graph, corrections)

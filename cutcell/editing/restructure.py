@@ -23,11 +23,17 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
     remaining ancestor, or else to its first remaining descendant. A joint of the file
     keeps its motion relative to its parent; added joints do not move relative to theirs, and the
     motion of removed joints is dropped.
+
+    A rig to which the same corrections were applied is returned as it is; others are refused, for
+    the weights and clips that they would start from are gone.
     """
-    if rig.origin is not None or not corrections.structural:
+    if not corrections.structural:
         return rig
-    old = rig.skeleton
+    old = rig.original or rig.skeleton
     skeleton, origin = restructured_skeleton(old, corrections)
+    if rig.origin is not None:
+        _require_applied(rig, skeleton, origin)
+        return rig
     removed = ~np.isin(np.arange(len(old.joints)), origin)
     heir = _heirs(old, removed)
     number = np.maximum(np.cumsum(~removed) - 1, 0)
@@ -55,7 +61,18 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
             replace(one, joint=int(number[heir[one.joint]])) for one in rig.attachments
         ),
         origin=origin.astype(np.int32),
+        original=old,
     )
+
+
+def _require_applied(rig: Rig, skeleton: Skeleton, origin: NDArray[np.int_]) -> None:
+    """Refuse corrections that make another skeleton (j,) of a rig's original one than it has."""
+    same = np.array_equal(rig.origin, origin) and skeleton.names == rig.skeleton.names
+    if not same or not np.array_equal(skeleton.parents, rig.skeleton.parents):
+        raise ParameterError(
+            f"{rig.name} already has other corrections of its joints; apply all corrections at "
+            "once to the rig as it was loaded"
+        )
 
 
 def restructured_skeleton(

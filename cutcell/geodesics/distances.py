@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Unpack
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
+from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
@@ -46,6 +47,11 @@ class BoneDistances(Summarized):
         What computed them, for more distances along the same graph.
     skeleton : Skeleton or None
         What the bones are of; None where bones were given.
+
+    Attributes
+    ----------
+    fingerprint : mapping
+        Of the graph, the skeleton and the options; empty in a copy by `replace`.
     """
 
     at_welded: NDArray[np.float64]
@@ -56,6 +62,12 @@ class BoneDistances(Summarized):
     fallback: NDArray[np.uint8]
     solver: BoneDistanceSolver
     skeleton: Skeleton | None = None
+    fingerprint: Fingerprint = field(init=False, default_factory=dict)
+
+    def identified(self, fingerprint: Fingerprint) -> BoneDistances:
+        """Set the fingerprint of new distances; return them."""
+        object.__setattr__(self, "fingerprint", fingerprint)
+        return self
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -263,10 +275,14 @@ def bone_distances(
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
         joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
     shared = nearest_joints, bones, sources
+    fingerprint = {**graph.fingerprint, **distance_fingerprint(skeleton, method, allowed)}
     if allowed is None:
-        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver, skeleton)
-    first = np.unique(node, return_index=True)[1]
-    return BoneDistances(joint[:, first], joint, *shared, fallback, solver, skeleton)
+        by_place = fallback[graph.vertex_node]
+        distances = BoneDistances(joint, None, *shared, by_place, solver, skeleton)
+    else:
+        first = np.unique(node, return_index=True)[1]
+        distances = BoneDistances(joint[:, first], joint, *shared, fallback, solver, skeleton)
+    return distances.identified(fingerprint if graph.fingerprint else {})
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:

@@ -11,6 +11,7 @@ from ..runtime.progress import Progress, share_of, silent
 from ..runtime.threads import cancellable
 from .assemble import assemble
 from .cutcell_graph import CutCellGraph
+from .fingerprint import graph_fingerprint
 from .memory import check_hits
 from .ray_tracers import CASTERS
 from .rays import cast_all_rays
@@ -98,6 +99,7 @@ def build_graph(
             inside = fast_intervals(surface, hits, tau)
         report(0.9)
         graph = assemble(surface, hits, inside, method.connectivity, tau)
+        object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method))
         report(1.0)
         return graph
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..runtime.repr import Summarized
+from .fingerprint import Fingerprint
 from .interior import InteriorPoints
 from .lattice import Lattice
 from .neighbours import Adjacency, list_neighbours
@@ -57,6 +58,11 @@ class CutCellGraph(Summarized):
         Which faces of the mesh are inside out, see `inverted_faces`.
     winding_threshold : float
         tau: what has at least this winding number is inside.
+
+    Attributes
+    ----------
+    fingerprint : mapping
+        Of the mesh and the options that it was built from; empty in a copy by `replace`.
     """
 
     nodes: NDArray[np.float64]
@@ -73,6 +79,7 @@ class CutCellGraph(Summarized):
     interior: InteriorPoints
     inverted: NDArray[np.bool_]
     winding_threshold: float = 0.5
+    fingerprint: Fingerprint = field(init=False, default_factory=dict)
 
     @property
     def _summary(self) -> dict[str, Any]:

@@ -91,6 +91,8 @@ class Rig(Summarized):
     origin : array_like, shape (j,), int32, optional
         Which joint of the file each one is, -1 where joints were added; None where the skeleton
         is the file's. See `corrected_rig`.
+    original : Skeleton, optional
+        The skeleton before corrections added, removed, renamed or reparented joints.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -116,6 +118,7 @@ class Rig(Summarized):
     warnings: tuple[str, ...] = ()
     weight_sums: NDArray[np.float64] | None = None
     origin: NDArray[np.int32] | None = None
+    original: Skeleton | None = None
     source: Any = field(default=None, repr=False)
 
     if TYPE_CHECKING:
@@ -135,6 +138,7 @@ class Rig(Summarized):
             warnings: tuple[str, ...] = (),
             weight_sums: NDArray[np.float64] | None = None,
             origin: ArrayLike | None = None,
+            original: Skeleton | None = None,
             source: Any = None,
         ) -> None: ...
 

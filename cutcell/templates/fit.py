@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
+from ..graph.fingerprint import mesh_fingerprint, require_same
 from ..rig import Skeleton
 from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
@@ -64,7 +65,7 @@ def fit_skeleton(
     Raises
     ------
     ParameterError
-        There is no such template.
+        There is no such template, or the graph is of another mesh.
     MeshError
         The mesh has no inside that joints could be in.
     SkeletonError
@@ -78,6 +79,8 @@ def fit_skeleton(
     """
     template = check_template(template)
     mesh = as_mesh(mesh)
+    if graph is not None:
+        require_same("graph", graph.fingerprint, mesh_fingerprint(mesh))
     if graph is None or not RESOLUTION <= graph.lattice.resolution <= 2 * RESOLUTION:
         graph = build_graph(mesh, RESOLUTION, progress=progress)
     nodes = graph.nodes[graph.connected]

@@ -1,5 +1,6 @@
 """Binding again with other joints: the graph stays, and weights are those of a fresh binding."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -34,12 +35,59 @@ def test_weights_equal_those_of_a_fresh_binding(method):
     np.testing.assert_allclose(again, cutcell.bind(rig, 24, method=method).weights, atol=1e-9)
 
 
-def test_a_graph_of_something_else_is_refused():
-    graph = cutcell.build_graph(RIG.mesh, 16)
-    with pytest.raises(ParameterError, match="built with resolution=16, the method has 24"):
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"resolution": 16},
+        {"connectivity": 6},
+        {"winding_threshold": 0.4},
+        {"orient": False},
+        {"method": "paper"},
+    ],
+)
+def test_a_graph_by_another_method_is_refused(other):
+    graph = cutcell.build_graph(RIG.mesh, **{"resolution": 24, **other})
+    name = "connectivity" if "method" in other else next(iter(other))
+    with pytest.raises(ParameterError, match=name):
         cutcell.bind(RIG, 24, graph=graph)
-    with pytest.raises(ParameterError, match="built with connectivity='any'"):
-        cutcell.bind(RIG, 16, method="paper", graph=graph)
-    other = cutcell.TriangleMesh(np.array([0.3, 0, 0]) + RIG.mesh.vertices, RIG.mesh.faces)
-    with pytest.raises(ParameterError, match="of another mesh"):
-        cutcell.bind(replace(RIG, mesh=other), 16, graph=graph)
+    fresh = cutcell.build_graph(cutcell.load(demo_path("robot")).mesh, 24)
+    assert cutcell.bind(RIG, 24, graph=pickle.loads(pickle.dumps(fresh))).graph.is_closed
+
+
+@pytest.mark.parametrize("change", ["moved", "half", "flipped", "reversed"])
+def test_a_graph_of_another_mesh_is_refused(change):
+    vertices, faces = RIG.mesh.vertices, RIG.mesh.faces
+    other = {
+        "moved": (vertices + np.array([0.3, 0, 0]), faces),
+        "half": (vertices, faces[::2]),
+        "flipped": (vertices, np.concatenate([faces[:1, ::-1], faces[1:]])),
+        "reversed": (vertices, faces[::-1]),
+    }[change]
+    graph = cutcell.build_graph(RIG.mesh, 16)
+    mesh = cutcell.TriangleMesh(*other)
+    with pytest.raises(ParameterError, match="vertices" if change == "moved" else "faces"):
+        cutcell.bind(replace(RIG, mesh=mesh), 16, graph=graph)
+    with pytest.raises(ParameterError):
+        cutcell.fit_skeleton(mesh, "biped", graph=graph)
+    with pytest.raises(ParameterError):
+        cutcell.bind(RIG, 16, graph=replace(graph, faces=graph.faces[::2]))
+
+
+def test_distances_of_something_else_are_refused():
+    binding = cutcell.bind(RIG, 16)
+    assert cutcell.explain(RIG, 0, 16, distances=binding.distances).joints
+    assert cutcell.diagnose(RIG, 16, distances=binding.distances, only_weights=True) is not None
+    for rig in (
+        moved(0),
+        replace(
+            RIG, skeleton=replace(RIG.skeleton, deform=np.arange(len(RIG.skeleton.joints)) > 0)
+        ),
+        replace(RIG, mesh=cutcell.TriangleMesh(RIG.mesh.vertices, RIG.mesh.faces[::2])),
+    ):
+        with pytest.raises(ParameterError):
+            cutcell.explain(rig, 0, 16, distances=binding.distances)
+        with pytest.raises(ParameterError):
+            cutcell.diagnose(rig, 16, distances=binding.distances)
+    for options in ({"samples": 7}, {"leaf": "point"}, {"connectivity": 6}, {"resolution": 24}):
+        with pytest.raises(ParameterError, match=next(iter(options))):
+            cutcell.explain(RIG, 0, distances=binding.distances, **{"resolution": 16, **options})

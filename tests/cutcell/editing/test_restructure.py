@@ -153,3 +153,30 @@ def test_the_structure_is_kept_as_json():
     assert not Corrections({"elbow": JointCorrection(gain=2)}).structural
     assert Corrections.from_json(made.to_json()) == made
     assert made.removed == ("wrist",)
+
+
+def test_the_same_corrections_change_nothing_again():
+    corrections = Corrections(joints={"tip": TIP}, removed=["elbow"])
+    rig = cutcell.corrected_rig(arm_rig(), corrections)
+    again = cutcell.corrected_rig(rig, corrections)
+    assert again.skeleton.names == rig.skeleton.names
+    np.testing.assert_array_equal(again.weights, rig.weights)
+    assert cutcell.bind(rig, 16, corrections=corrections).weights.shape[1] == 3
+
+
+@pytest.mark.parametrize(
+    "corrections",
+    [
+        Corrections(removed=["wrist"]),
+        Corrections(removed=["nobody"]),
+        Corrections(joints={"tip": TIP}, removed=["elbow", "nobody"]),
+        Corrections(joints={"bend": JointCorrection(was="nobody")}),
+        Corrections(joints={"tip": TIP}),
+        Corrections(joints={"tip": TIP, "wrist": JointCorrection(parent="tip")}, removed=["elbow"]),
+        Corrections(joints={"other": TIP}, removed=["elbow"]),
+    ],
+)
+def test_other_corrections_of_a_corrected_rig_are_refused(corrections):
+    rig = rig_of(tip=TIP, removed=["elbow"])
+    with pytest.raises((ParameterError, SkeletonError)):
+        cutcell.corrected_rig(rig, corrections)
