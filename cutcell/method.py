@@ -7,7 +7,13 @@ from difflib import get_close_matches
 from typing import Any, Literal, TypedDict, get_args
 
 from .errors import ParameterError
-from .rig.checks import check_choice, check_flag, check_integer, check_number
+from .rig.checks import (
+    check_choice,
+    check_flag,
+    check_fraction,
+    check_integer,
+    check_number,
+)
 
 Connectivity = Literal[6, 26, "any"]
 Leaf = Literal["point", "extend", "fit"]
@@ -112,7 +118,7 @@ class Method:
         How paths run inside. 6: along the axes, as in the paper. 26: along the diagonals of
         lattice cells, too. "any": at any angle, so that distances converge to geodesic ones.
     winding_threshold : float
-        tau: what has at least this winding number is inside, 0 to 1.
+        tau: what has at least this winding number is inside; more than 0 and less than 1.
     orient : bool
         Whether faces that are inside out count as turned round.
     samples : int
@@ -162,7 +168,7 @@ class Method:
         checked = {
             "resolution": check_resolution(self.resolution),
             "connectivity": check_choice("connectivity", self.connectivity, CONNECTIVITIES),
-            "winding_threshold": check_number("winding_threshold", self.winding_threshold, 0, 1),
+            "winding_threshold": check_fraction("winding_threshold", self.winding_threshold),
             "orient": check_flag("orient", self.orient),
             "samples": check_integer("samples", self.samples, 1, MAX_SAMPLES),
             "leaf": check_choice("leaf", leaf, LEAVES),

@@ -38,7 +38,12 @@ class GraphChoices(param.Parameterized):
     connectivity: param.Selector[int | str] = param.Selector(
         default=default("connectivity"), objects=[6, 26, "any"]
     )
-    winding_threshold = param.Number(default("winding_threshold"), bounds=(0, 1))
+    winding_threshold = param.Number(
+        default("winding_threshold"),
+        bounds=(0, 1),
+        inclusive_bounds=(False, False),
+        softbounds=(0.01, 0.99),
+    )
     orient = param.Boolean(default("orient"), label="Flip inverted faces")
     leaf: param.Selector[str] = param.Selector(default=default("leaf"), objects=list(LEAVES))
 

@@ -28,6 +28,13 @@ def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> 
     return int(value)
 
 
+def check_fraction(name: str, value: Any) -> float:
+    """Return `value` as a float between 0 and 1; neither of these is one."""
+    if not _is_real(value) or not 0 < _as_float(value) < 1:
+        raise ParameterError(f"{name} must be a number between 0 and 1, not {shown(value)}")
+    return _as_float(value)
+
+
 def check_number(name: str, value: Any, low: float, high: float, why: str = "") -> float:
     """Return `value` as a float, or say which range it must lie in."""
     if not _is_real(value) or not low <= _as_float(value) <= high:  # also catches nan

@@ -5,8 +5,9 @@ from dataclasses import FrozenInstanceError, fields
 import numpy as np
 import pytest
 
-from cutcell import ANIMATION, PAPER, Method, ParameterError
+from cutcell import ANIMATION, PAPER, Method, ParameterError, build_graph
 from cutcell.method import Options, method_of
+from tests import meshes
 
 
 def test_the_presets_have_names():
@@ -96,3 +97,13 @@ def test_how_many_joints_are_measured_follows_from_the_method():
     assert ANIMATION.joints_needed == 3
     assert ANIMATION.with_options(max_influences=None).joints_needed is None
     assert (PAPER.reach_needed, ANIMATION.reach_needed) == (np.inf, 6)
+
+
+@pytest.mark.parametrize("bound", [0, 1, 0.0, 1.0, -0.1, float("nan")])
+def test_the_bounds_of_the_winding_threshold_are_open(bound):
+    """At 0 all of the cube would be inside, at 1 rounding alone would decide."""
+    with pytest.raises(ParameterError, match="winding_threshold"):
+        Method(winding_threshold=bound)
+    with pytest.raises(ParameterError, match="winding_threshold"):
+        build_graph(meshes.box(), 8, winding_threshold=bound)
+    assert Method(winding_threshold=0.01).winding_threshold == 0.01
