@@ -37,7 +37,7 @@ class BindReport:
     ----------
     store : Path
     rows : list of dict
-        Of the manifest, one for each source.
+        Of the manifest, one for each source of this call.
     bound, known, failed : int
         Number of sources that were bound, were in the store before, and have no file.
     seconds : float
@@ -82,8 +82,9 @@ def bind_all(
 ) -> BindReport:
     """Bind all assets of some files and folders into a store.
 
-    Assets that are in the store are skipped: files are named by a hash of the asset's bytes and
-    of the parameters.
+    Assets that are in the store are skipped: files are named by a hash of the asset's bytes, of the
+    parameters and of the code that computes. The manifest keeps the rows of earlier calls with the
+    same parameters and code.
 
     Parameters
     ----------
@@ -156,6 +157,8 @@ class _Run:
         self._count, self._limit, self._report = count, limit, report
         self._suffix = parameters.digest()
         self._rows: dict[str, dict[str, Any]] = {}
+        rows = store.manifest() if store.path_of_manifest.is_file() else []
+        self._earlier = {r["name"]: r for r in rows if r["key"].endswith(f"-{self._suffix}")}
         self._written = perf_counter()
         self._jobs: dict[str, _Job] = {}
         self.bound = self.unchanged = 0
@@ -219,7 +222,8 @@ class _Run:
         return [self._rows[name] for name in sorted(self._rows)]
 
     def write_manifest(self) -> None:
-        self._store.write_manifest(self.sorted_rows())
+        rows = self._earlier | self._rows
+        self._store.write_manifest([rows[name] for name in sorted(rows)])
         self._written = perf_counter()
 
 

@@ -5,7 +5,8 @@
     STORE/ab/abcdef....json          sizes, metrics, warnings or the error, seconds
     STORE/manifest.parquet           a row for each source
 
-Files are named by a hash of the asset's bytes and of the parameters. Writing is atomic, so a store
+Files are named by a hash of the asset's bytes, of the parameters and of the code that computes.
+The manifest keeps the rows of earlier calls with the same parameters and code. Writing is atomic, so a store
 is valid whenever its writer is stopped.
 """
 
@@ -26,6 +27,7 @@ from ... import __version__
 from ...errors import FileError, MissingLibraryError
 from ...method import PAPER, Method
 from ...rig.checks import check_choice
+from ...runtime.sources import source_digest
 from ...runtime.writing import reason, sweep, write_all
 
 STORE = "store.json"
@@ -65,8 +67,9 @@ class Parameters:
         check_choice("precision", self.precision, PRECISIONS)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all of it as plain data."""
-        return {**asdict(self), "version": __version__, "format": FORMAT}
+        """Return all of it as plain data, with a hash of the code that computes."""
+        code = source_digest("networks", "cli")
+        return {**asdict(self), "version": __version__, "format": FORMAT, "code": code}
 
     def digest(self) -> str:
         """Return a hash of all of it, 16 hexadecimal digits."""
@@ -147,9 +150,14 @@ class Store:
 
     def write_manifest(self, rows: Sequence[Mapping[str, Any]]) -> Path:
         """Write the manifest; see `manifest_row`."""
-        path = self.folder / MANIFEST
+        path = self.path_of_manifest
         write_all({path: table_bytes(rows)})
         return path
+
+    @property
+    def path_of_manifest(self) -> Path:
+        """Where the manifest is, once it is written."""
+        return self.folder / MANIFEST
 
     def manifest(self) -> list[dict[str, Any]]:
         """Return the rows of the manifest.
@@ -159,7 +167,7 @@ class Store:
         FileError
             There is none, or it cannot be read.
         """
-        path = self.folder / MANIFEST
+        path = self.path_of_manifest
         if not path.is_file():
             raise FileError(f"{self.folder}: is no store; make one: cutcell dataset bind IN OUT")
         return read_table(path)

@@ -308,3 +308,20 @@ def test_the_manifest_has_hashes_times_and_memory(made):
     for column in ("content", "key", "bytes", "seconds_graph", "memory", "version", "warnings"):
         assert row[column] is not None
     assert json.loads((store / "store.json").read_text())["method"]["resolution"] == 12
+
+
+def test_a_second_call_keeps_the_rows_of_the_first(made, tmp_path):
+    folder, _, _ = made
+    for name in ("rig0", "rig1"):
+        report = bind_all([folder / f"{name}.npz"], tmp_path / "store", QUICK, workers=1)
+        assert [row["name"] for row in report.rows] == [name]
+    store = Store(tmp_path / "store")
+    assert [row["name"] for row in store.manifest()] == ["rig0", "rig1"]
+    assert [name for name, _ in store.entries()] == ["rig0", "rig1"]
+
+
+def test_a_change_of_the_code_makes_the_assets_of_a_store_stale(monkeypatch):
+    before = QUICK.digest()
+    assert before == QUICK.digest()
+    monkeypatch.setattr("cutcell.dataset.read.store.source_digest", lambda *left_out: "other")
+    assert QUICK.digest() != before
