@@ -9,7 +9,7 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError, SkeletonError, WeightsError
+from ..errors import ParameterError, SkeletonError
 from ..graph import CutCellGraph
 from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
@@ -17,8 +17,9 @@ from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
+from .allowed import allowed_distances, check_allowed, is_limit_useful, reasons_not_reached
 from .bones import Bones, Sources
-from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
+from .fallback import REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .solver import BoneDistanceSolver
 from .tracing.inside import Inside
 
@@ -47,6 +48,8 @@ class BoneDistances(Summarized):
         What computed them, for more distances along the same graph.
     skeleton : Skeleton or None
         What the bones are of; None where bones were given.
+    allowed : array, shape (n, j), bool, or None
+        Which joints each vertex may follow; None: all.
 
     Attributes
     ----------
@@ -62,6 +65,7 @@ class BoneDistances(Summarized):
     fallback: NDArray[np.uint8]
     solver: BoneDistanceSolver
     skeleton: Skeleton | None = None
+    allowed: NDArray[np.bool_] | None = None
     fingerprint: Fingerprint = field(init=False, default_factory=dict)
 
     def identified(self, fingerprint: Fingerprint) -> BoneDistances:
@@ -130,16 +134,6 @@ class BoneDistances(Summarized):
         """Nodes where paths begin, shape (s,)."""
         return self.sources.node
 
-    @property
-    def source_bone(self) -> NDArray[np.int32]:
-        """The bone of each source, shape (s,)."""
-        return self.sources.bone
-
-    @property
-    def source_distance(self) -> NDArray[np.float64]:
-        """Straight distance from each source to its bone, shape (s,)."""
-        return self.sources.distance
-
     def field(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every node of the graph, shape (N,).
 
@@ -178,6 +172,8 @@ class BoneDistances(Summarized):
         joint[np.ix_(np.unique(self.bones.joint), reached)] = by_node[
             :, self.graph.vertex_node[reached]
         ]
+        if self.allowed is not None:
+            joint[~self.allowed.T] = np.inf
         return joint
 
 
@@ -209,8 +205,8 @@ def bone_distances(
     nearest_joints : int, optional
         Number of nearest joints to measure from at each vertex, 1 or more; at most as many others
         are measured, too. By default the number that the method needs: all for
-        `cutcell.PAPER`. Fewer take less time with connectivity "any"; with others they do not,
-        and neither where `allowed` is given: then all are measured.
+        `cutcell.PAPER`. Fewer take less time with connectivity "any"; with others all are
+        measured, as they are where `allowed` has nearly as many different rows as joints.
     within : float, optional
         Leave out joints farther than this factor times the nearest, 1 or more; by default the
         factor of the method. Only where `nearest_joints` are measured, and to about half a
@@ -252,23 +248,23 @@ def bone_distances(
     check_positions(skeleton.joints, "joint", SkeletonError)
     solver = graph if isinstance(graph, BoneDistanceSolver) else BoneDistanceSolver(graph)
     graph = solver.graph
-    if graph.connectivity != "any" or allowed is not None:
+    if graph.connectivity != "any":
         nearest_joints = None
     progress("distances", 0.0)
     if allowed is not None:
-        _check_allowed(graph, skeleton, allowed)
+        check_allowed(graph, skeleton, allowed)
     bones, aimed = solver.bones(skeleton, method.leaf)
     sources = solver.sources(bones, method.samples)
     bones, sources = solver.aim(bones, sources, aimed, method.samples, progress)
-    by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
-    joint, fallback = _per_joint(solver, bones, len(skeleton.joints), by_node)
-
-    node = solver.targets
-    if allowed is not None:  # per vertex, as those at one place may differ
-        node = graph.vertex_node
-        joint, fallback = joint.take(node, axis=1), fallback[node]
-        joint[~allowed.T] = np.inf
-        fallback[(fallback == REACHED) & ~np.isfinite(joint).any(axis=0)] = NOT_ALLOWED
+    node = solver.targets if allowed is None else graph.vertex_node
+    if allowed is None:
+        by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
+        joint, fallback = _per_joint(solver, bones, len(skeleton.joints), by_node)
+    else:  # per vertex, as those at one place may differ
+        if nearest_joints is not None and not is_limit_useful(allowed, nearest_joints, bones):
+            nearest_joints = None
+        joint = allowed_distances(solver, bones, sources, nearest_joints, within, allowed, progress)
+        fallback = reasons_not_reached(solver, bones, sources, joint)
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
@@ -281,7 +277,8 @@ def bone_distances(
         distances = BoneDistances(joint, None, *shared, by_place, solver, skeleton)
     else:
         first = np.unique(node, return_index=True)[1]
-        distances = BoneDistances(joint[:, first], joint, *shared, fallback, solver, skeleton)
+        of_skeleton = solver, skeleton, allowed
+        distances = BoneDistances(joint[:, first], joint, *shared, fallback, *of_skeleton)
     return distances.identified(fingerprint if graph.fingerprint else {})
 
 
@@ -312,15 +309,3 @@ def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:
     """Reduce distances of bones (b, t) to those of the joints that have bones."""
     first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
     return np.minimum.reduceat(distance, first, axis=0)
-
-
-def _check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.bool_]) -> None:
-    shape = (len(graph.vertex_node), len(skeleton.joints))
-    if allowed.shape != shape:
-        raise WeightsError(f"allowed has the shape {allowed.shape}, expected {shape}")
-    bad = np.flatnonzero(~allowed[:, skeleton.deform].any(axis=1))
-    if len(bad):
-        raise WeightsError(
-            f"vertex {bad[0]} may follow no joint that carries weight "
-            f"({len(bad)} vertices are so); check which joints its skin lists"
-        )

@@ -41,9 +41,9 @@ def test_distances_equal_the_slow_ones(name, leaf, connectivity):
     graph = build_graph(TriangleMesh(*meshes.ALL[name]()), 10, connectivity=connectivity)
     distances = bone_distances(graph, ARM, leaf=leaf)
     for b in range(len(distances.bones.joint)):
-        mine = distances.source_bone == b
+        mine = distances.sources.bone == b
         sources = dict(
-            zip(distances.source_node[mine], distances.source_distance[mine], strict=True)
+            zip(distances.source_node[mine], distances.sources.distance[mine], strict=True)
         )
         slow = naive.shortest_paths(len(graph.nodes), graph.edges, graph.lengths, sources)
         reached = distances.fallback == REACHED
@@ -61,12 +61,12 @@ def test_distances_equal_scipy_on_a_large_graph():
     distances = bone_distances(graph, ARM)
     count = len(graph.nodes)
     for b in range(2):
-        mine = distances.source_bone == b
+        mine = distances.sources.bone == b
         # One node more, from which every source is as far as its bone.
         matrix = graph.csr().tocoo()
         row = np.concatenate([matrix.row, np.full(mine.sum(), count)])
         col = np.concatenate([matrix.col, distances.source_node[mine]])
-        data = np.concatenate([matrix.data, distances.source_distance[mine]])
+        data = np.concatenate([matrix.data, distances.sources.distance[mine]])
         linked = csr_array((data, (row, col)), shape=(count + 1, count + 1))
         expected = dijkstra(linked, indices=count)[graph.vertex_node]
         np.testing.assert_allclose(distances.joint[b], expected, rtol=1e-12)
@@ -81,12 +81,12 @@ def test_sources_are_the_nearest_nodes():
         points = bones.start[b] + np.linspace(0, 1, 7)[:, None] * (bones.end[b] - bones.start[b])
         apart = cdist(points, graph.nodes)
         nearest = set(np.nonzero(apart <= apart.min(axis=1, keepdims=True) * (1 + 1e-9))[1])
-        mine = distances.source_bone == b
+        mine = distances.sources.bone == b
         assert set(distances.source_node[mine]) == nearest
         straight = distance_to_segment(
             graph.nodes[distances.source_node[mine]], bones.start[b], bones.end[b]
         )
-        np.testing.assert_allclose(distances.source_distance[mine], straight)
+        np.testing.assert_allclose(distances.sources.distance[mine], straight)
 
 
 def test_a_joint_is_as_near_as_its_nearest_bone():

@@ -1,0 +1,88 @@
+"""Distances where vertices may follow different joints, as those of several skins."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import WeightsError
+from ..graph import CutCellGraph
+from ..rig import Skeleton
+from ..runtime.progress import Progress
+from .bones import Bones, Sources
+from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
+from .solver import BoneDistanceSolver
+
+
+def check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.bool_]) -> None:
+    """Refuse a wrong shape, and vertices without any joint that carries weight."""
+    shape = (len(graph.vertex_node), len(skeleton.joints))
+    if allowed.shape != shape:
+        raise WeightsError(f"allowed has the shape {allowed.shape}, expected {shape}")
+    bad = np.flatnonzero(~allowed[:, skeleton.deform].any(axis=1))
+    if len(bad):
+        raise WeightsError(
+            f"vertex {bad[0]} may follow no joint that carries weight "
+            f"({len(bad)} vertices are so); check which joints its skin lists"
+        )
+
+
+def is_limit_useful(allowed: NDArray[np.bool_], nearest_joints: int, bones: Bones) -> bool:
+    """Return whether few joints are measured sooner than all: once for each set of joints."""
+    joints = np.unique(bones.joint)
+    # As many other joints are measured at each vertex.
+    return len(np.unique(_row_keys(allowed[:, joints]))) * 2 * nearest_joints <= len(joints)
+
+
+def allowed_distances(
+    solver: BoneDistanceSolver,
+    bones: Bones,
+    sources: Sources,
+    nearest_joints: int | None,
+    within: float,
+    allowed: NDArray[np.bool_],
+    progress: Progress,
+) -> NDArray[np.float64]:
+    """Compute the distances (j, n) of the joints that each vertex may follow.
+
+    Shapes: allowed (n, j).
+    """
+    node, joints = solver.graph.vertex_node, np.unique(bones.joint)
+    result = np.full((allowed.shape[1], len(node)), np.inf)
+    if nearest_joints is None:
+        by_node = solver.paths(bones, sources, progress=progress)
+        result[joints] = by_node.take(node, axis=1)
+        result[~allowed.T] = np.inf
+        return result
+    first, group = np.unique(_row_keys(allowed[:, joints]), return_index=True, return_inverse=True)[
+        1:
+    ]
+    for k, example in enumerate(first):
+        progress("distances", k / len(first))
+        chosen, vertices = allowed[example, bones.joint], np.flatnonzero(group == k)
+        targets, number = np.unique(node[vertices], return_inverse=True)
+        by_node = solver.paths(
+            bones.subset(chosen), sources.subset(chosen), nearest_joints, within, targets=targets
+        )
+        result[np.ix_(np.unique(bones.joint[chosen]), vertices)] = by_node[:, number]
+    return result
+
+
+def reasons_not_reached(
+    solver: BoneDistanceSolver, bones: Bones, sources: Sources, joint: NDArray[np.float64]
+) -> NDArray[np.uint8]:
+    """Return why vertices (n,) with distances (j, n) need a fallback."""
+    node = solver.graph.vertex_node
+    fallback = np.where(np.isfinite(joint).any(axis=0), REACHED, UNREACHED).astype(np.uint8)
+    lost = np.flatnonzero(fallback != REACHED)
+    if len(lost):
+        by_any = solver.paths(bones, sources, 1, targets=node[lost])
+        fallback[lost[np.isfinite(by_any).any(axis=0)]] = NOT_ALLOWED
+    fallback[(fallback != NOT_ALLOWED) & ~solver.graph.connected[node]] = UNUSED
+    return fallback
+
+
+def _row_keys(rows: NDArray[np.bool_]) -> NDArray[np.void]:
+    """Return a value for each row (n, j) that is equal where rows are equal, (n,)."""
+    packed = np.ascontiguousarray(np.packbits(rows, axis=1))
+    return packed.view(np.dtype((np.void, packed.shape[1])))[:, 0]

@@ -1,0 +1,74 @@
+"""Distances of vertices that may follow different joints."""
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell.geodesics import bone_distances
+from cutcell.geodesics.fallback import NOT_ALLOWED
+from tests.bars import bar
+
+RIG = bar(48, joints=33)
+GRAPH = cutcell.build_graph(RIG.mesh, 32)
+
+
+def halves():
+    """Let each half of a bar follow the joints of its half, and one vertex one joint."""
+    joint, vertex = RIG.skeleton.joints[:, 0], RIG.mesh.vertices[:, 0]
+    middle = joint.mean()
+    allowed = (joint >= middle - 1e-9)[None] == (vertex >= middle - 1e-9)[:, None]
+    return allowed
+
+
+@pytest.mark.parametrize("make", [halves, lambda: np.ones_like(halves())])
+def test_the_limit_to_nearest_joints_holds_among_allowed_ones(make):
+    allowed = make()
+    every = bone_distances(GRAPH, RIG.skeleton, allowed=allowed, nearest_joints=1000).joint
+    found = bone_distances(GRAPH, RIG.skeleton, allowed=allowed)
+    assert found.nearest_joints == 3
+    measured = np.isfinite(found.joint)
+    assert not measured[~allowed.T].any()
+    assert measured.sum(axis=0).max() < 10 < np.isfinite(every).sum(axis=0).max()
+    nearest = np.argsort(every, axis=0, kind="stable")[:1]
+    assert np.take_along_axis(measured, nearest, axis=0).all()
+    np.testing.assert_allclose(found.joint[measured], every[measured], atol=1e-9)
+    assert not np.isfinite(found.all_joints()[~allowed.T]).any()
+    np.testing.assert_array_equal(found.fallback, 0)
+
+
+def test_where_all_are_allowed_weights_are_those_without_a_choice():
+    every = np.ones_like(halves())
+    chosen = bone_distances(GRAPH, RIG.skeleton, allowed=every)
+    plain = bone_distances(GRAPH, RIG.skeleton)
+    np.testing.assert_allclose(
+        cutcell.skinning_weights(chosen, allowed=every),
+        cutcell.skinning_weights(plain),
+        atol=1e-9,
+    )
+
+
+def test_weights_are_nearly_those_of_all_joints():
+    allowed = halves()
+    weights = [
+        cutcell.skinning_weights(
+            bone_distances(GRAPH, RIG.skeleton, allowed=allowed, nearest_joints=nearest),
+            allowed=allowed,
+        )
+        for nearest in (None, 1000)
+    ]
+    # Joints as dense as these have more weight beyond the nearest ones than those of characters.
+    np.testing.assert_allclose(*weights, atol=1e-3)
+
+
+def test_vertices_that_only_other_joints_reach_have_a_reason():
+    rig, allowed, beside = RIG, halves(), np.array([0, 3, 0])
+    vertices = np.concatenate([rig.mesh.vertices, rig.mesh.vertices + beside])
+    faces = np.concatenate([rig.mesh.faces, rig.mesh.faces + len(rig.mesh.vertices)])
+    joints = np.concatenate([rig.skeleton.joints, rig.skeleton.joints + beside])
+    below = rig.skeleton.parents
+    parents = np.concatenate([below, np.where(below >= 0, below + len(below), -1)])
+    graph = cutcell.build_graph((vertices, faces), 64)
+    skeleton = cutcell.Skeleton(joints, parents)
+    crossed = np.kron([[0, 1], [1, 0]], np.ones_like(allowed)).astype(bool)
+    found = bone_distances(graph, skeleton, allowed=crossed)
+    np.testing.assert_array_equal(found.fallback, NOT_ALLOWED)
