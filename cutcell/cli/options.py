@@ -88,8 +88,8 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
     ),
     "winding_threshold": (
         float, 0.5, "--winding-threshold", "T",
-        "Winding number from which a point is inside, 0 to 1. Lower values fill more of an open"
-        " mesh.",
+        "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
+        " open mesh.",
     ),
     "orient": (
         bool, True, "--orient/--no-orient", "",

@@ -67,7 +67,8 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
 
 def _require_applied(rig: Rig, skeleton: Skeleton, origin: NDArray[np.int_]) -> None:
     """Refuse corrections that make another skeleton (j,) of a rig's original one than it has."""
-    same = np.array_equal(rig.origin, origin) and skeleton.names == rig.skeleton.names
+    same = rig.origin is not None and np.array_equal(rig.origin, origin)
+    same = same and skeleton.names == rig.skeleton.names
     if not same or not np.array_equal(skeleton.parents, rig.skeleton.parents):
         raise ParameterError(
             f"{rig.name} already has other corrections of its joints; apply all corrections at "

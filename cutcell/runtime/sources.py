@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 @cache
 def source_digest(*left_out: str) -> str:
-    """Hash all Python sources of cutcell but those in the folders left out, 32 hexadecimal digits."""
+    """Hash all Python sources of cutcell but those in some folders, 32 hexadecimal digits."""
     digest = hashlib.blake2b(digest_size=16)
     for path in sorted(PACKAGE.rglob("*.py")):
         name = path.relative_to(PACKAGE)

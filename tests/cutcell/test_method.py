@@ -55,7 +55,7 @@ def test_only_the_rig_falloff_is_refined():
     [
         ({"resolution": 1}, "resolution must be a whole number from 2 to 1,024, not 1"),
         ({"connectivity": 18}, "connectivity must be one of 6, 26, 'any', not 18"),
-        ({"winding_threshold": 2}, "winding_threshold must be a number from 0 to 1, not 2"),
+        ({"winding_threshold": 2}, "winding_threshold must be a number between 0 and 1, not 2"),
         ({"orient": "no"}, "orient must be True or False, not 'no'"),
         ({"samples": 0}, "samples must be a whole number from 1 to 1,000, not 0"),
         ({"leaf": "long"}, "leaf must be one of 'point', 'extend', 'fit', not 'long'"),

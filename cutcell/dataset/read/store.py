@@ -6,8 +6,8 @@
     STORE/manifest.parquet           a row for each source
 
 Files are named by a hash of the asset's bytes, of the parameters and of the code that computes.
-The manifest keeps the rows of earlier calls with the same parameters and code. Writing is atomic, so a store
-is valid whenever its writer is stopped.
+The manifest keeps the rows of earlier calls with the same parameters and code. Writing is atomic,
+so a store is valid whenever its writer is stopped.
 """
 
 from __future__ import annotations

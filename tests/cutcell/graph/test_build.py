@@ -235,7 +235,7 @@ def test_meshes_of_absurd_sizes_are_refused():
 
 def test_other_parameters_are_checked():
     mesh = TriangleMesh(*meshes.box())
-    with pytest.raises(ParameterError, match="winding_threshold must be a number from 0 to 1"):
+    with pytest.raises(ParameterError, match="winding_threshold must be a number between 0 and 1"):
         build_graph(mesh, 8, winding_threshold=2)
     with pytest.raises(ParameterError, match="connectivity must be one of 6, 26, 'any'"):
         build_graph(mesh, 8, connectivity=18)
