@@ -35,17 +35,8 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from .notebook import is_notebook
+from .sources import PACKAGE, source_digest
 
-PACKAGE = Path(__file__).resolve().parents[1]
-SOURCES = (
-    "runtime/compiled.py",
-    "runtime/compile_cache.py",
-    "geometry/*.py",
-    "graph/**/*.py",
-    "geodesics/**/*.py",
-    "weights/**/*.py",
-)
-"""Files of the functions of a binding: a change of any one makes all compiled functions stale."""
 KEPT = 3
 """How many older sets of functions are left in a folder, for other versions that use it, too."""
 ANNOUNCEMENT = "Compiling, once on this machine. This takes a minute or two."
@@ -169,11 +160,9 @@ def folders() -> tuple[Path, ...]:
 @cache
 def _set_name() -> str:
     """Name the functions that this compiler makes of these sources for this processor."""
-    files = sorted(path for pattern in SOURCES for path in PACKAGE.glob(pattern))
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
     processor = sys.platform, binding.get_host_cpu_name(), get_host_cpu_features()
-    sources = [(path.relative_to(PACKAGE).as_posix(), _digest(str(path))) for path in files]
-    parts = repr((compiler, processor, sources))
+    parts = repr((compiler, processor, source_digest()))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"
 
 
