@@ -199,6 +199,23 @@ def read_weights(
     return read
 
 
+def joint_shares(
+    document: Document, primitive: dict[str, Any], joints: int, user: str
+) -> NDArray[np.float64]:
+    """Return the sum of the weights on each joint of a skin, shape (joints,), as they are stored."""
+    named = attributes(primitive, user)
+    shares = np.zeros(joints)
+    for n in influence_sets(named):
+        where, share = _influences(document, named, n, user)
+        if where.shape != share.shape:
+            continue  # refused when the weights are read
+        _check_influences(where, share, joints, n, user)
+        is_used = np.isfinite(share) & (share > 0)
+        counted = np.minimum(share[is_used], 1.0)  # a sum must not overflow
+        shares += np.bincount(where[is_used].astype(np.int64), counted, joints)
+    return shares
+
+
 def _influences(
     document: Document, named: dict[str, Any], n: int, user: str
 ) -> tuple[NDArray, NDArray]:

@@ -1,12 +1,12 @@
 """From glTF skins to one skeleton in one space.
 
 The space is the bind space of the first skin: there vertices have the positions of their accessor.
-A joint's rest position is where its inverse bind matrix comes from, inverse(IBM) · 0.
+A joint's rest position is where its inverse bind matrix comes from, inverse(IBM) · 0. If the
+matrix contradicts the joint's node, `read_skins` has replaced it.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from ....errors import FileError, SkeletonError
 from ....rig import Skeleton
-from ..container import Document, indices
+from ..binds import agreed, invertible
+from ..container import Document
 from ..nodes import Nodes
-from .accessors import read_accessor
+from .stored_skins import StoredSkin, mended_warning, read_skins
 
 
 @dataclass(eq=False)
@@ -35,6 +36,8 @@ class Bind:
     """From the rig's space to the scene, at rest."""
     unbound: set[int] = field(default_factory=set)
     """Joints whose skin has no inverse bind matrices to take a position from."""
+    mended: dict[int, dict[int, NDArray]] = field(default_factory=dict)
+    """Of each skin, by the joint's number in it: matrices that replace those of the file."""
 
 
 def read_bind(
@@ -45,89 +48,66 @@ def read_bind(
     `world` leads from there to the scene; the joints at rest say where it is when left out.
     """
     bind = Bind()
+    stored = read_skins(document, nodes, skins)
     place: dict[int, int] = {}
-    for skin in skins:
-        joints = _skin_joints(document, skin)
-        inverse, has_binds = _inverse_binds(document, skin, joints)
-        shared = [k for k, node in enumerate(joints) if node in place]
-        if not bind.nodes:
+    mended: set[int] = set()
+    votes: list[tuple[NDArray, NDArray]] = []
+    for skin, one in stored.items():
+        shared = [
+            k
+            for k, node in enumerate(one.nodes)
+            if node in place and place[node] not in mended and not one.bound.mended[k]
+        ]
+        is_first = not bind.nodes
+        if is_first:
             to_rig = np.eye(4)
-            bind.world = _rest_world(nodes, joints, inverse) if world is None else world
         elif shared:
-            reference = bind.inverse[place[joints[shared[0]]]]
-            to_rig = np.linalg.inv(reference) @ inverse[shared[0]]
+            here = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
+            shares = one.bound.shares[shared]
+            relations = np.linalg.inv(here) @ one.bound.inverse[shared]
+            shares = shares if shares.any() else np.ones(len(shared))
+            to_rig = agreed(relations, shares, one.bound.corners)
         else:
-            to_rig = np.linalg.inv(bind.world) @ _rest_world(nodes, joints, inverse)
-        if not _invertible(to_rig):
+            to_rig = np.linalg.inv(bind.world) @ one.stands(nodes)
+        if not invertible(to_rig):
             raise SkeletonError(
                 f"{document.label('skins', skin)}: its inverse bind matrices cannot be inverted"
             )
-        moved = inverse @ np.linalg.inv(to_rig)
-        for k, node in enumerate(joints):
+        moved = one.bound.inverse @ np.linalg.inv(to_rig)
+        for k, node in enumerate(one.nodes):
             if node not in place:
                 place[node] = len(bind.nodes)
                 bind.nodes.append(node)
                 bind.inverse.append(moved[k])
-                if not has_binds and len(joints) > 1:
+                if one.bound.mended[k]:
+                    mended.add(place[node])
+                if not one.has_binds and len(one.nodes) > 1:
                     bind.unbound.add(place[node])
-        bind.skins[skin] = [place[node] for node in joints]
+            elif place[node] in mended and not one.bound.mended[k]:
+                mended.remove(place[node])
+                bind.inverse[place[node]] = moved[k]
+        bind.skins[skin] = [place[node] for node in one.nodes]
         bind.to_rig[skin] = to_rig
+        if is_first or shared:
+            votes.append(one.votes(to_rig))
+            bind.world = _rest_world(nodes, stored[skins[0]], votes) if world is None else world
+    for skin, one in stored.items():
+        bind.mended[skin] = {
+            k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
+            for k in np.flatnonzero(one.bound.mended).tolist()
+        }
+    if mended:
+        names = _names(nodes, bind)
+        document.warnings.append(mended_warning([names[j] for j in sorted(mended)]))
     return bind
 
 
-def _skin_joints(document: Document, skin: int) -> list[int]:
-    user = document.label("skins", skin)
-    joints = indices(document.items("skins")[skin], "joints", user)
-    if not joints:
-        raise SkeletonError(f"{user} has no joints")
-    for node in joints:
-        document.item("nodes", node, user)
-    twice = next((node for node, times in Counter(joints).items() if times > 1), None)
-    if twice is not None:
-        raise SkeletonError(f"{user} names {document.label('nodes', twice)} twice as a joint")
-    return joints
-
-
-def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[NDArray, bool]:
-    owner, user = document.items("skins")[skin], document.label("skins", skin)
-    if "inverseBindMatrices" not in owner:
-        return np.tile(np.eye(4), (len(joints), 1, 1)), False
-    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)
-    if len(stored) < len(joints):
-        raise SkeletonError(
-            f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
-        )
-    inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
-    bad = np.flatnonzero(~_invertible(inverse))
-    if len(bad):
-        raise SkeletonError(
-            f"{user}: the inverse bind matrix of the joint "
-            f"{document.label('nodes', joints[bad[0]])} cannot be inverted"
-        )
-    inverse = inverse.copy()
-    inverse[:, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
-    return inverse, True
-
-
-def _invertible(matrices: NDArray) -> NDArray[np.bool_]:
-    """Return which matrices, shape (..., 4, 4), can be inverted."""
-    linear = matrices[..., :3, :3]
-    with np.errstate(over="ignore", invalid="ignore"):
-        size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
-        finite = np.isfinite(matrices).all(axis=(-2, -1)) & np.isfinite(size)
-        return finite & (size > 0) & (np.abs(np.linalg.det(linear)) > 1e-9 * size)
-
-
-def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
-    """Return the matrix from a skin's bind space to the scene, by its topmost joint.
-
-    The other joints may be posed; the topmost one seldom is.
-    """
-    for k in np.argsort(nodes.depth[joints], kind="stable").tolist():
-        world = nodes.world[joints[k]] @ inverse[k]
-        if _invertible(world):  # a joint may be scaled to nothing to hide what it holds
-            return world
-    return np.eye(4)
+def _rest_world(
+    nodes: Nodes, first: StoredSkin, votes: list[tuple[NDArray, NDArray]]
+) -> NDArray[np.float64]:
+    """Return the matrix to the scene on which most of the vertices' weight agrees."""
+    matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
+    return agreed(matrices, shares, first.bound.corners) if len(shares) else first.stands(nodes)
 
 
 def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
@@ -143,9 +123,13 @@ def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     positions = at_rest[:, :3, 3]
     if not np.isfinite(positions).all():
         raise FileError("a joint has no finite rest position")
-    names = unique_names([nodes.raw[node].get("name") for node in bind.nodes])
+    names = _names(nodes, bind)
     orientations = _nearest_orthogonal(at_rest[:, :3, :3])
     return Skeleton(positions, np.array(parents), names, orientations=orientations)  # type: ignore[arg-type]
+
+
+def _names(nodes: Nodes, bind: Bind) -> tuple[str, ...]:
+    return unique_names([nodes.raw[node].get("name") for node in bind.nodes])
 
 
 def _nearest_orthogonal(linear: NDArray) -> NDArray:

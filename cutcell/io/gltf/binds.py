@@ -1,0 +1,204 @@
+"""Inverse bind matrices that contradict the nodes of their joints.
+
+Exporters write the identity, or the matrix of the mesh, for joints that hold no vertex. Such a
+joint gets its place from its node, relative to the nearest joint above whose matrix is good.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+NEAR = 1e-3
+"""How far off a joint is still in its place. Lengths are in sizes of the character."""
+ORIGIN = 1e-2
+"""A joint so close to the origin of its bind space may have no matrix of its own."""
+FAR, FARTHER = 0.5, 4.0
+"""A matrix of a joint's own is wrong so far off, and so many times as far as those of joints that
+hold vertices."""
+STRETCH, TURN = 0.1, 0.02
+"""How much a frame may be stretched by a pose, and turned where there is none."""
+SOFT = 0.05
+"""Of positions of a character, the distance at which one counts little for the other."""
+MAX_CANDIDATES = 256
+
+
+@dataclass(eq=False)
+class BoundSkin:
+    """The joints of a skin, as they were bound and as their nodes are.
+
+    Parameters
+    ----------
+    inverse : array, shape (j, 4, 4)
+        Inverse bind matrices; `mend` replaces some.
+    shares : array, shape (j,)
+        The sum of the vertices' weights on each joint.
+    world : array, shape (j, 4, 4)
+        Of the joints' nodes.
+    relative : array, shape (j, 4, 4)
+        From each joint's node to that of the nearest joint above.
+    parents : list of int
+        The nearest joint above, -1 for none.
+    order : list of int
+        The joints, parents first.
+    corners : array, shape (2, 3)
+        Of the box around the vertices.
+    """
+
+    inverse: NDArray[np.float64]
+    shares: NDArray[np.float64]
+    world: NDArray[np.float64]
+    relative: NDArray[np.float64]
+    parents: list[int]
+    order: list[int]
+    corners: NDArray[np.float64]
+    mended: NDArray[np.bool_] = field(init=False)
+    """Which joints got another matrix."""
+    is_trusted: NDArray[np.bool_] = field(init=False)
+    """Which joints say where the character stands: those that hold vertices, if any does."""
+    stands: NDArray[np.float64] | None = field(init=False, default=None)
+    """From the bind space to the scene, at rest; None where no joint says it."""
+
+    def __post_init__(self) -> None:
+        self.mended = np.zeros(len(self.parents), bool)
+        self.is_solvable = invertible(self.inverse)
+        usable = np.where(self.is_solvable[:, None, None], self.inverse, np.eye(4))
+        self.frames = np.linalg.inv(usable)
+        self.skinning = self.world @ usable
+        self.is_blank = self._blank()
+        self.is_held = self.shares > 0
+        trusted = self.is_held if self.is_held.any() else ~self.is_blank
+        self.is_trusted = trusted & self.is_solvable & invertible(self.skinning)
+        at = [k for k in self.order if self.is_trusted[k]]
+        if at:
+            shares = self.shares[at] if self.is_held.any() else np.ones(len(at))
+            self.stands = agreed(self.skinning[at], shares, self.corners)
+
+    def _blank(self) -> NDArray[np.bool_]:
+        """Return which joints may have no matrix of their own, shape (j,)."""
+        size = np.ptp(self.corners, axis=0).max()
+        at_origin = np.linalg.norm(self.frames[:, :3, 3], axis=1) <= ORIGIN * size
+        free = np.flatnonzero(self.shares <= 0)
+        keys = {k: self.inverse[k].astype(np.float32).tobytes() for k in free.tolist()}
+        times = Counter(keys.values())
+        repeated = np.zeros(len(at_origin), bool)
+        repeated[free] = [times[keys[k]] > 1 for k in free.tolist()]
+        return ~self.is_solvable | at_origin | repeated
+
+    @property
+    def scale(self) -> float:
+        """How many units of the scene a unit of the bind space is."""
+        return 1.0 if self.stands is None else float(np.cbrt(abs(np.linalg.det(self.stands))))
+
+    def box(self) -> NDArray[np.float64]:
+        """Return the corners of the box in the scene, shape (8, 3)."""
+        grid = np.stack(np.meshgrid(*self.corners.T, indexing="ij"), axis=-1).reshape(-1, 3)
+        return grid if self.stands is None else _moved(grid, self.stands)
+
+    def shifts(self) -> NDArray[np.float64]:
+        """Return how far the nodes of trusted joints are from where all stands, in the scene."""
+        if self.stands is None:
+            return np.zeros(0)
+        bound = _moved(self.frames[self.is_trusted, :3, 3], self.stands)
+        return np.linalg.norm(bound - self.world[self.is_trusted, :3, 3], axis=1)
+
+
+def mend(skins: Sequence[BoundSkin]) -> None:
+    """Give joints without vertices whose matrix contradicts their node another one."""
+    if not skins:
+        return
+    boxes = np.concatenate([skin.box() for skin in skins])
+    size = float(np.ptp(boxes, axis=0).max()) or 1.0
+    shifts = np.concatenate([skin.shifts() for skin in skins]) / size
+    for skin in skins:
+        if skin.is_trusted.any():
+            _mend(skin, size / (skin.scale or 1.0), shifts)
+
+
+def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
+    """Mend a skin of a size; `shifts` are those of all trusted joints, in sizes."""
+    below = _first_below(skin)
+    for k in skin.order:
+        if skin.is_held[k]:
+            continue
+        parent = skin.parents[k]
+        if parent >= 0:
+            frame = skin.frames[parent] @ skin.relative[k]
+        else:
+            stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
+            frame = np.linalg.inv(stands) @ skin.world[k]
+        if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shifts):
+            continue
+        if not invertible(frame):  # it is scaled to nothing, to be hidden
+            frame = frame.copy()
+            frame[:3, :3] = skin.frames[parent][:3, :3] if parent >= 0 else np.eye(3)
+        skin.frames[k], skin.mended[k] = frame, True
+        skin.inverse[k] = np.linalg.inv(frame)
+
+
+def _first_below(skin: BoundSkin) -> list[int]:
+    """Return for each joint the first trusted one below it, -1 for none."""
+    first = [-1] * len(skin.parents)
+    for k in skin.order:
+        above = skin.parents[k]
+        while skin.is_trusted[k] and above >= 0 and first[above] < 0:
+            first[above] = k
+            above = skin.parents[above]
+    return first
+
+
+def _contradicts(
+    skin: BoundSkin, k: int, frame: NDArray, size: float, shifts: NDArray[np.float64]
+) -> bool:
+    """Return whether a joint's matrix is not what its node says, `frame` (4, 4), and a pose."""
+    bound = skin.frames[k]
+    off = np.linalg.norm(frame[:3, 3] - bound[:3, 3]) / size
+    if not skin.is_blank[k]:
+        return bool(off > max(FAR, FARTHER * shifts.max()))
+    # A pose that moves the whole character away from its root moves no joint from its parent.
+    if off > (NEAR if skin.parents[k] >= 0 else max(NEAR, float(np.median(shifts)))):
+        return True
+    if not invertible(frame):
+        return False
+    change = np.linalg.solve(frame[:3, :3], bound[:3, :3])
+    stretch = np.abs(np.linalg.svd(change, compute_uv=False) - 1).max()
+    turn = np.abs(change - np.eye(3)).max()
+    return bool(stretch > STRETCH or (turn > TURN and shifts.max() <= ORIGIN))
+
+
+def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.float64]:
+    """Return the one of some matrices with which most shares agree, the first of equals.
+
+    Shapes: matrices (j, 4, 4), shares (j,), corners (2, 3) of the box that they move.
+    """
+    box = np.eye(4)
+    box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, 1e-300))
+    box[:3, 3] = corners.mean(axis=0)
+    moved = (matrices @ box)[:, :3].reshape(len(matrices), 12)
+    sizes = np.linalg.norm(moved.reshape(-1, 3, 4)[:, :, :3], axis=(1, 2))
+    candidates = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
+    scores = np.empty(len(candidates))
+    for i, k in enumerate(candidates.tolist()):
+        apart = np.linalg.norm(moved - moved[k], axis=1) / np.maximum(sizes, sizes[k])
+        scores[i] = (shares * np.exp(-apart / SOFT)).sum()
+    first = int(np.flatnonzero(scores >= scores.max() * (1 - 1e-3))[0])
+    chosen: NDArray[np.float64] = matrices[candidates[first]]
+    return chosen
+
+
+def invertible(matrices: NDArray) -> NDArray[np.bool_]:
+    """Return which matrices, shape (..., 4, 4), can be inverted."""
+    linear = matrices[..., :3, :3]
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
+        finite = np.isfinite(matrices).all(axis=(-2, -1)) & np.isfinite(size)
+        return finite & (size > 0) & (np.abs(np.linalg.det(linear)) > 1e-9 * size)
+
+
+def _moved(points: NDArray, matrix: NDArray) -> NDArray[np.float64]:
+    moved: NDArray[np.float64] = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved
