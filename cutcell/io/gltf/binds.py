@@ -1,7 +1,8 @@
 """Inverse bind matrices that contradict the nodes of their joints.
 
 Exporters write the identity, or the matrix of the mesh, for joints that hold no vertex. Such a
-joint gets its place from its node, relative to the nearest joint above whose matrix is good.
+joint gets its place from its node, relative to the nearest joint above whose matrix is good. A
+root or a control without such a joint above stays at the origin, where roots ordinarily are.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ STRETCH, TURN = 0.1, 0.02
 """How much a frame may be stretched by a pose, and turned where there is none."""
 SOFT = 0.05
 """Of positions of a character, the distance at which one counts little for the other."""
+LEAN = 0.15
+"""How far a posed character may stand from its topmost joint, which is seldom posed."""
+HIDDEN = 1e-2
+"""A joint is hidden that is so small for the largest of its skin."""
 MAX_CANDIDATES = 256
 
 
@@ -58,8 +63,10 @@ class BoundSkin:
     corners: NDArray[np.float64]
     mended: NDArray[np.bool_] = field(init=False)
     """Which joints got another matrix."""
+    stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
+    """Of those, joints that stay where their matrix was, with their places."""
     is_trusted: NDArray[np.bool_] = field(init=False)
-    """Which joints say where the character stands: those that hold vertices, if any does."""
+    """Which joints say where the character stands: those that hold vertices, unless hidden."""
     stands: NDArray[np.float64] | None = field(init=False, default=None)
     """From the bind space to the scene, at rest; None where no joint says it."""
 
@@ -69,25 +76,42 @@ class BoundSkin:
         usable = np.where(self.is_solvable[:, None, None], self.inverse, np.eye(4))
         self.frames = np.linalg.inv(usable)
         self.skinning = self.world @ usable
-        self.is_blank = self._blank()
-        self.is_held = self.shares > 0
-        trusted = self.is_held if self.is_held.any() else ~self.is_blank
-        self.is_trusted = trusted & self.is_solvable & invertible(self.skinning)
-        at = [k for k in self.order if self.is_trusted[k]]
-        if at:
-            shares = self.shares[at] if self.is_held.any() else np.ones(len(at))
-            self.stands = agreed(self.skinning[at], shares, self.corners)
-
-    def _blank(self) -> NDArray[np.bool_]:
-        """Return which joints may have no matrix of their own, shape (j,)."""
         size = np.ptp(self.corners, axis=0).max()
-        at_origin = np.linalg.norm(self.frames[:, :3, 3], axis=1) <= ORIGIN * size
-        free = np.flatnonzero(self.shares <= 0)
-        keys = {k: self.inverse[k].astype(np.float32).tobytes() for k in free.tolist()}
-        times = Counter(keys.values())
-        repeated = np.zeros(len(at_origin), bool)
-        repeated[free] = [times[keys[k]] > 1 for k in free.tolist()]
-        return ~self.is_solvable | at_origin | repeated
+        distance = np.linalg.norm(self.frames[:, :3, 3], axis=1)
+        self.is_at_origin = self.is_solvable & (distance <= ORIGIN * size)
+        self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
+        self.is_held = self.shares > 0
+        scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
+        shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
+        trusted = self.is_held & shows
+        self.is_trusted = trusted if trusted.any() else ~self.is_blank & shows
+        at = self.trusted()
+        if at:
+            self.stands = agreed(self.skinning[at], self.votes(at), self.corners)
+
+    def trusted(self) -> list[int]:
+        """Return the joints that say where the character stands, parents first."""
+        return [k for k in self.order if self.is_trusted[k]]
+
+    def votes(self, at: list[int]) -> NDArray[np.float64]:
+        """Return how much each of some trusted joints counts."""
+        shares = self.shares[at]
+        return shares if shares.any() else np.ones(len(at))
+
+    def topmost(self) -> NDArray[np.float64] | None:
+        """Return where the topmost joint says that the character stands, shape (4, 4)."""
+        for k in self.order:
+            if self.is_solvable[k] and not self.mended[k] and invertible(self.skinning[k]):
+                topmost: NDArray[np.float64] = self.skinning[k]
+                return topmost
+        return None
+
+    def _is_repeated(self) -> NDArray[np.bool_]:
+        """Return which joints without vertices share their matrix with another one, shape (j,)."""
+        keys = [matrix.tobytes() for matrix in self.inverse]
+        is_free = (self.shares <= 0).tolist()
+        times = Counter(key for key, free in zip(keys, is_free, strict=True) if free)
+        return np.array([free and times[k] > 1 for k, free in zip(keys, is_free, strict=True)])
 
     @property
     def scale(self) -> float:
@@ -122,20 +146,28 @@ def mend(skins: Sequence[BoundSkin]) -> None:
 def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
     """Mend a skin of a size; `shifts` are those of all trusted joints, in sizes."""
     below = _first_below(skin)
+    is_good = skin.is_held | ~skin.is_blank
+    has_children = np.zeros(len(is_good), bool)
+    has_children[[parent for parent in skin.parents if parent >= 0]] = True
     for k in skin.order:
+        parent = skin.parents[k]
+        is_below_good = parent >= 0 and bool(is_good[parent])
+        is_good[k] |= is_below_good
         if skin.is_held[k]:
             continue
-        parent = skin.parents[k]
-        if parent >= 0:
+        if is_below_good:
             frame = skin.frames[parent] @ skin.relative[k]
         else:
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
-        if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shifts):
+        tolerance = NEAR if is_below_good else max(NEAR, float(np.median(shifts)))
+        if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shifts, tolerance):
             continue
+        if not is_below_good and skin.is_at_origin[k] and (parent >= 0 or has_children[k]):
+            skin.stays[k] = skin.frames[k, :3, 3].copy()
         if not invertible(frame):  # it is scaled to nothing, to be hidden
             frame = frame.copy()
-            frame[:3, :3] = skin.frames[parent][:3, :3] if parent >= 0 else np.eye(3)
+            frame[:3, :3] = skin.frames[parent][:3, :3] if is_below_good else np.eye(3)
         skin.frames[k], skin.mended[k] = frame, True
         skin.inverse[k] = np.linalg.inv(frame)
 
@@ -152,15 +184,19 @@ def _first_below(skin: BoundSkin) -> list[int]:
 
 
 def _contradicts(
-    skin: BoundSkin, k: int, frame: NDArray, size: float, shifts: NDArray[np.float64]
+    skin: BoundSkin,
+    k: int,
+    frame: NDArray[np.float64],
+    size: float,
+    shifts: NDArray[np.float64],
+    tolerance: float,
 ) -> bool:
-    """Return whether a joint's matrix is not what its node says, `frame` (4, 4), and a pose."""
+    """Return whether a joint's matrix is not what its node says, `frame` (4, 4), nor a pose."""
     bound = skin.frames[k]
     off = np.linalg.norm(frame[:3, 3] - bound[:3, 3]) / size
     if not skin.is_blank[k]:
         return bool(off > max(FAR, FARTHER * shifts.max()))
-    # A pose that moves the whole character away from its root moves no joint from its parent.
-    if off > (NEAR if skin.parents[k] >= 0 else max(NEAR, float(np.median(shifts)))):
+    if off > tolerance:
         return True
     if not invertible(frame):
         return False
@@ -170,24 +206,49 @@ def _contradicts(
     return bool(stretch > STRETCH or (turn > TURN and shifts.max() <= ORIGIN))
 
 
+def rest_world(
+    matrices: NDArray, shares: NDArray, topmost: NDArray | None, corners: NDArray
+) -> NDArray[np.float64]:
+    """Return the matrix to the scene on which most of the vertices' weight agrees.
+
+    Of a posed character no large part may agree. Then it is that of the topmost joint, if it is
+    much the same.
+
+    Shapes: matrices (j, 4, 4), shares (j,), topmost (4, 4), corners (2, 3).
+    """
+    chosen = agreed(matrices, shares, corners)
+    same = apart(matrices, chosen, corners) <= ORIGIN
+    if topmost is None or shares[same].sum() >= shares.sum() / 2:
+        return chosen
+    return topmost if apart(topmost[None], chosen, corners)[0] <= LEAN else chosen
+
+
 def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.float64]:
     """Return the one of some matrices with which most shares agree, the first of equals.
 
     Shapes: matrices (j, 4, 4), shares (j,), corners (2, 3) of the box that they move.
     """
-    box = np.eye(4)
-    box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, 1e-300))
-    box[:3, 3] = corners.mean(axis=0)
-    moved = (matrices @ box)[:, :3].reshape(len(matrices), 12)
-    sizes = np.linalg.norm(moved.reshape(-1, 3, 4)[:, :, :3], axis=(1, 2))
-    candidates = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
-    scores = np.empty(len(candidates))
-    for i, k in enumerate(candidates.tolist()):
-        apart = np.linalg.norm(moved - moved[k], axis=1) / np.maximum(sizes, sizes[k])
-        scores[i] = (shares * np.exp(-apart / SOFT)).sum()
-    first = int(np.flatnonzero(scores >= scores.max() * (1 - 1e-3))[0])
-    chosen: NDArray[np.float64] = matrices[candidates[first]]
+    heaviest = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
+    near = [np.exp(-apart(matrices, matrices[k], corners) / SOFT) for k in heaviest.tolist()]
+    scores = np.array([(shares * one).sum() for one in near])
+    first = int(np.flatnonzero(scores >= scores.max() * (1 - NEAR))[0])
+    chosen: NDArray[np.float64] = matrices[heaviest[first]]
     return chosen
+
+
+def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.float64]:
+    """Return how far matrices move a box from where another one moves it, in its sizes.
+
+    Shapes: matrices (j, 4, 4), other (4, 4), corners (2, 3); returns (j,).
+    """
+    box = np.eye(4)
+    box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, np.finfo(float).tiny))
+    box[:3, 3] = corners.mean(axis=0)
+    moved, there = (matrices @ box)[:, :3], (other @ box)[:3]
+    sizes = np.linalg.norm(moved[..., :3], axis=(1, 2))
+    sizes = np.maximum(np.maximum(sizes, np.linalg.norm(there[:, :3])), np.finfo(float).tiny)
+    distances: NDArray[np.float64] = np.linalg.norm(moved - there, axis=(1, 2)) / sizes
+    return distances
 
 
 def invertible(matrices: NDArray) -> NDArray[np.bool_]:

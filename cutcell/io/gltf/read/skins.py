@@ -17,7 +17,7 @@ from ....rig import Skeleton
 from ..binds import agreed, invertible
 from ..container import Document
 from ..nodes import Nodes
-from .stored_skins import StoredSkin, mended_warning, read_skins
+from .stored_skins import mended_warning, read_skins
 
 
 @dataclass(eq=False)
@@ -36,6 +36,8 @@ class Bind:
     """From the rig's space to the scene, at rest."""
     unbound: set[int] = field(default_factory=set)
     """Joints whose skin has no inverse bind matrices to take a position from."""
+    stays: dict[int, NDArray] = field(default_factory=dict)
+    """Places of joints that stay where a matrix was that was replaced."""
     mended: dict[int, dict[int, NDArray]] = field(default_factory=dict)
     """Of each skin, by the joint's number in it: matrices that replace those of the file."""
 
@@ -68,7 +70,7 @@ def read_bind(
             shares = shares if shares.any() else np.ones(len(shared))
             to_rig = agreed(relations, shares, one.bound.corners)
         else:
-            to_rig = np.linalg.inv(bind.world) @ one.stands(nodes)
+            to_rig = np.linalg.inv(bind.world) @ one.stands([one.votes(np.eye(4))])
         if not invertible(to_rig):
             raise SkeletonError(
                 f"{document.label('skins', skin)}: its inverse bind matrices cannot be inverted"
@@ -81,33 +83,30 @@ def read_bind(
                 bind.inverse.append(moved[k])
                 if one.bound.mended[k]:
                     mended.add(place[node])
+                if k in one.bound.stays:
+                    stays = to_rig @ [*one.bound.stays[k], 1.0]
+                    bind.stays[place[node]] = stays[:3]
                 if not one.has_binds and len(one.nodes) > 1:
                     bind.unbound.add(place[node])
             elif place[node] in mended and not one.bound.mended[k]:
                 mended.remove(place[node])
+                bind.stays.pop(place[node], None)
                 bind.inverse[place[node]] = moved[k]
         bind.skins[skin] = [place[node] for node in one.nodes]
         bind.to_rig[skin] = to_rig
         if is_first or shared:
             votes.append(one.votes(to_rig))
-            bind.world = _rest_world(nodes, stored[skins[0]], votes) if world is None else world
+            bind.world = stored[skins[0]].stands(votes) if world is None else world
     for skin, one in stored.items():
         bind.mended[skin] = {
             k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
             for k in np.flatnonzero(one.bound.mended).tolist()
         }
-    if mended:
+    if mended - set(bind.stays):
         names = _names(nodes, bind)
-        document.warnings.append(mended_warning([names[j] for j in sorted(mended)]))
+        placed = sorted(mended - set(bind.stays))
+        document.warnings.append(mended_warning([names[j] for j in placed]))
     return bind
-
-
-def _rest_world(
-    nodes: Nodes, first: StoredSkin, votes: list[tuple[NDArray, NDArray]]
-) -> NDArray[np.float64]:
-    """Return the matrix to the scene on which most of the vertices' weight agrees."""
-    matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
-    return agreed(matrices, shares, first.bound.corners) if len(shares) else first.stands(nodes)
 
 
 def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
@@ -121,6 +120,8 @@ def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
         unbound = sorted(bind.unbound)
         at_rest[unbound] = by_nodes[unbound]
     positions = at_rest[:, :3, 3]
+    for j, place_of_joint in bind.stays.items():
+        positions[j] = place_of_joint
     if not np.isfinite(positions).all():
         raise FileError("a joint has no finite rest position")
     names = _names(nodes, bind)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import SkeletonError
-from ..binds import BoundSkin, invertible, mend
+from ..binds import BoundSkin, invertible, mend, rest_world
 from ..container import Document, indices
 from ..nodes import Nodes
 from .accessors import read_accessor
@@ -27,24 +28,20 @@ class StoredSkin:
     """Whether it has inverse bind matrices; without them joints are where their nodes are."""
 
     def votes(self, to_rig: NDArray) -> tuple[NDArray, NDArray]:
-        """Return where trusted joints say that the rig stands, and how many vertices they hold.
+        """Return where trusted joints say that the rig stands, and how much each counts.
 
         Shapes: to_rig (4, 4); returns (k, 4, 4), (k,).
         """
-        bound = self.bound
-        at = [k for k in bound.order if bound.is_trusted[k] and self.has_binds]
-        shares = bound.shares[at] if bound.is_held.any() else np.ones(len(at))
-        return bound.skinning[at] @ np.linalg.inv(to_rig), shares
+        at = self.bound.trusted() if self.has_binds else []
+        return self.bound.skinning[at] @ np.linalg.inv(to_rig), self.bound.votes(at)
 
-    def stands(self, nodes: Nodes) -> NDArray[np.float64]:
-        """Return the matrix from its bind space to the scene."""
-        if self.has_binds and self.bound.stands is not None:
-            return self.bound.stands
-        for k in self.bound.order:  # the topmost joint first, which is seldom posed
-            world = nodes.world[self.nodes[k]] @ self.bound.inverse[k]
-            if invertible(world):  # a joint may be scaled to nothing to hide what it holds
-                return world
-        return np.eye(4)
+    def stands(self, votes: Sequence[tuple[NDArray, NDArray]]) -> NDArray[np.float64]:
+        """Return the matrix from its bind space to the scene, by the votes of some skins."""
+        matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
+        topmost = self.bound.topmost()
+        if len(shares):
+            return rest_world(matrices, shares, topmost, self.bound.corners)
+        return np.eye(4) if topmost is None else topmost
 
 
 def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, StoredSkin]:
