@@ -201,6 +201,14 @@ def triangles(mesh):
     return corners[at], at, polygons
 
 
+def unbound(bind):
+    """Return the inverse of a bind matrix; zeros, which the reader replaces, if it has none."""
+    try:
+        return np.linalg.inv(bind)
+    except np.linalg.LinAlgError:
+        return np.zeros((4, 4))
+
+
 def influences(target, query, first, count):
     """Return what a mesh follows."""
     order = query.GetJointOrder()
@@ -215,7 +223,7 @@ def influences(target, query, first, count):
     numbers, weights = (np.array(values).reshape(count, -1) for values in stored)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(joints)):
         raise RuntimeError(f"{target.GetPrim().GetName()} is weighted to joints out of range")
-    inverse = [np.linalg.inv(matrix(binds[k])) @ place for k in joints]
+    inverse = [unbound(matrix(binds[k])) @ place for k in joints]
     is_weighted = weights != 0
     return {
         "joints": np.array([first + k for k in joints]),

@@ -24,6 +24,7 @@ from ...errors import FileError, MeshError
 from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
 from ..gltf.influences import sorted_influences, store_influences
+from ..gltf.read.stored_skins import mended_warning
 from ..materials.surfaces import scene_surfaces
 from .joints import SceneSkin, scene_skins
 
@@ -52,6 +53,10 @@ def scene_document(
     data = made.buffer.finish()
     document = Document(path, made.json, [data])
     document.surfaces = scene_surfaces(scene, path, made.meshes)
+    placed = dict.fromkeys(node for skin in skins.values() for node in skin.mended)
+    if placed:
+        names = [str(scene["node_names"][node]) for node in placed]
+        document.warnings.append(mended_warning(names))
     return document
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..gltf.binds import BoundSkin, mend
 from ..gltf.nodes import compose
 
 
@@ -17,6 +18,8 @@ class SceneSkin:
 
     joints: list[int]
     inverse: NDArray[np.float64]
+    mended: tuple[int, ...] = ()
+    """Joints, as nodes, that are placed by their nodes since their matrix contradicts them."""
 
 
 def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
@@ -36,6 +39,7 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
         for k in meshes
         if f"mesh_{k}_joints" in scene and len(scene[f"mesh_{k}_joints"])
     }
+    skins = _mended(scene, skins, parents, world)
     if not skins:
         return _unbound(scene, parents, world, bones)
     assigned: set[int] = {joint for skin in skins.values() for joint in skin.joints}
@@ -87,6 +91,58 @@ def _with_more(skin: SceneSkin, more: list[int], parents: list[int], world: NDAr
     return SceneSkin(
         [*skin.joints, *(bone for bone, _ in added)],
         np.concatenate([skin.inverse, np.array([m for _, m in added]).reshape(-1, 4, 4)]),
+        skin.mended,
+    )
+
+
+def _mended(
+    scene: Mapping[str, NDArray],
+    skins: dict[int, SceneSkin],
+    parents: list[int],
+    world: NDArray,
+) -> dict[int, SceneSkin]:
+    """Return skins without matrices that contradict the nodes of joints that hold no vertex."""
+    bound = {}
+    for k, skin in skins.items():
+        arrays = world[skin.joints], scene[f"mesh_{k}_place"], scene[f"mesh_{k}_vertices"]
+        is_regular = len(arrays[2]) > 0 and all(np.isfinite(one).all() for one in arrays)
+        if is_regular and _inverse(arrays[1])[1]:
+            bound[k] = _bound(scene, k, skin, parents, world)
+    mend(list(bound.values()))
+    mended = dict(skins)
+    for k, one in bound.items():
+        skin, inverse = skins[k], skins[k].inverse.copy()
+        at = [j for j in np.flatnonzero(one.mended).tolist() if j not in one.stays]
+        inverse[at] = one.inverse[at] @ scene[f"mesh_{k}_place"]
+        mended[k] = SceneSkin(skin.joints, inverse, tuple(skin.joints[j] for j in at))
+    return mended
+
+
+def _bound(
+    scene: Mapping[str, NDArray], k: int, skin: SceneSkin, parents: list[int], world: NDArray
+) -> BoundSkin:
+    """Return a mesh's skin in the space in which its joints were bound."""
+    place, vertices = scene[f"mesh_{k}_place"], scene[f"mesh_{k}_vertices"]
+    number = {joint: j for j, joint in enumerate(skin.joints)} | {-1: -1}
+    above = [
+        next((a for a in _above(joint, parents)[1:] if a in number), -1) for joint in skin.joints
+    ]
+    relative = [
+        _inverse(world[a])[0] @ world[joint] if a >= 0 else world[joint]
+        for joint, a in zip(skin.joints, above, strict=True)
+    ]
+    columns = scene.get(f"mesh_{k}_columns", np.zeros(0, int))
+    values = scene.get(f"mesh_{k}_values", np.zeros(0))
+    used = np.isfinite(values) & (values > 0) & (columns >= 0) & (columns < len(skin.joints))
+    points = vertices @ place[:3, :3].T + place[:3, 3]
+    return BoundSkin(
+        skin.inverse @ _inverse(place)[0],
+        np.bincount(columns[used], np.minimum(values[used], 1.0), len(skin.joints)),
+        world[skin.joints],
+        np.array(relative),
+        [number[a] for a in above],
+        np.argsort(skin.joints, kind="stable").tolist(),  # parents come before their children
+        np.array([points.min(axis=0), points.max(axis=0)]),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -66,6 +66,9 @@ class GltfSource:
     """The node of each attachment."""
     rescaled: NDArray[np.bool_] | None = None
     """Vertices whose weights are saved as they were loaded, not as the document has them."""
+    mended: dict[int, dict[int, NDArray[np.float64]]] = field(default_factory=dict)
+    """Inverse bind matrices that contradict their nodes, as they should be: by skin, and by the
+    joint's number in it."""
 
 
 def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
@@ -158,7 +161,14 @@ def read_rig(
         warnings=(*document.warnings, *warnings),
         weight_sums=sums,
         source=GltfSource(
-            document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn), tuple(attached)
+            document,
+            parts,
+            skeleton,
+            bind.nodes,
+            inverse,
+            tuple(stored.drawn),
+            tuple(attached),
+            mended=bind.mended,
         ),
     )
 

@@ -51,8 +51,10 @@ def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, 
     for skin in skins:
         users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
         users = [i for i in users if i in in_scene] or users
-        stored[skin] = _read_skin(document, nodes, skin, users)
-    mend([one.bound for one in stored.values() if one.has_binds])
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            stored[skin] = _read_skin(document, nodes, skin, users)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        mend([one.bound for one in stored.values() if one.has_binds])
     for skin, one in stored.items():
         bad = np.flatnonzero(~invertible(one.bound.inverse))
         if len(bad):
@@ -139,6 +141,7 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
         )
     inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
     inverse = inverse.copy()
-    inverse[:, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
+    is_finite = np.isfinite(inverse).all(axis=(1, 2))
+    inverse[is_finite, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
     # Several joints that all have the identity have no matrices, as far as glTF goes.
     return inverse, len(joints) == 1 or not np.array_equal(inverse, same)

@@ -1,9 +1,12 @@
-"""Joints of a glTF document that were moved at rest: nodes, bind matrices, motions.
+"""Joints of a glTF document that were moved or mended at rest: nodes, bind matrices, motions.
 
 A joint's frame moves within itself by d, which takes three edits. Its inverse bind matrices,
 of every skin, become T(-d) IBM. Its node is shifted by what d is in its parent's frame; all that
 hangs on it by -d, so that it stays where it is. Keys of translations, which are absolute, are
 shifted by as much as the node that they move. Vertices do not move at rest.
+
+An inverse bind matrix that contradicted its node stays in the file until the joint is moved or
+holds a vertex: then it becomes the one that the joint was placed by.
 """
 
 from __future__ import annotations
@@ -62,7 +65,8 @@ class NewValues:
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)
-    if not by.any():
+    mended = _needed(rig, by.any(axis=1))
+    if not by.any() and not mended:
         return []
     nodes = Nodes(source.document)
     frame_shifts = np.zeros((len(nodes.raw), 3))
@@ -70,7 +74,7 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     shifts = node_shifts(nodes.local, nodes.parents, frame_shifts)
     for i in np.flatnonzero(shifts.any(axis=1)).tolist():
         _shift(document["nodes"][i], shifts[i])
-    replaced = _binds(document, source.document, frame_shifts)
+    replaced = _binds(document, source.document, frame_shifts, mended)
     return replaced + _translations(document, source.document, shifts)
 
 
@@ -80,9 +84,10 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     by = np.zeros_like(source.skeleton.joints)
     origin = np.arange(len(by)) if rig.origin is None else rig.origin
     has_origin = origin >= 0
-    by[origin[has_origin]] = (
-        rig.skeleton.joints[has_origin] - source.skeleton.joints[origin[has_origin]]
-    )
+    old, new = origin[has_origin], rig.skeleton.joints[has_origin]
+    is_moved = (new != source.skeleton.joints[old]).any(axis=1, keepdims=True)
+    frames = np.linalg.inv(source.inverse)[old, :3, 3]  # a mended joint may be away from its frame
+    by[old] = np.where(is_moved, new - frames, 0.0)
     moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
     return moved
 
@@ -105,29 +110,59 @@ def _shift(node: dict[str, Any], shift: NDArray[np.float64]) -> None:
         node["translation"] = np.add(node.get("translation", [0, 0, 0]), shift).tolist()
 
 
-def no_binds(label: str) -> SkeletonError:
-    """Return the refusal of a skin whose joints are where the nodes are."""
-    return SkeletonError(
+def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
+    """Return a skin's inverse bind matrices as they are stored, shape (k, 16).
+
+    Raises
+    ------
+    SkeletonError
+        There are none, or all are the identity, so that its joints are where their nodes are.
+    """
+    label, stored = loaded.label("skins", skin), loaded.json["skins"][skin]
+    count = len(stored["joints"])
+    if BINDS in stored:
+        values = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
+        if count == 1 or not (values[:count] == np.eye(4).ravel()).all():
+            return values
+    raise SkeletonError(
         f"{label} has no inverse bind matrices, so that its joints cannot be moved within "
         "its mesh; set the rig's source to None to write a new file instead"
     )
 
 
+def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArray]]:
+    """Return the mended matrices that must be saved: of joints that are moved or hold a vertex."""
+    source = rig.source
+    origin = np.arange(len(is_moved)) if rig.origin is None else rig.origin
+    needed: dict[int, dict[int, NDArray]] = {}
+    for part in source.parts:
+        mended = source.mended.get(part.skin, {})
+        is_held = np.zeros(len(is_moved), bool)
+        if mended:
+            columns = np.flatnonzero((origin >= 0) & rig.weights[part.rows].any(axis=0))
+            is_held[origin[columns]] = True
+        rows = {k: m for k, m in mended.items() if (is_held | is_moved)[part.joints[k]]}
+        if rows:
+            needed.setdefault(part.skin, {}).update(rows)
+    return needed
+
+
 def _binds(
-    document: dict[str, Any], loaded: Document, frame_shifts: NDArray[np.float64]
+    document: dict[str, Any],
+    loaded: Document,
+    frame_shifts: NDArray[np.float64],
+    mended: dict[int, dict[int, NDArray]],
 ) -> list[NewValues]:
     replaced = []
     for i, skin in enumerate(document.get("skins", [])):
         shift = frame_shifts[skin["joints"]]
-        if not shift.any():
+        if not shift.any() and i not in mended:
             continue
-        label = loaded.label("skins", i)
-        if BINDS not in skin:
-            raise no_binds(label)
-        old = skin.pop(BINDS)
-        values = read_accessor(loaded, old, "MAT4", label).astype(np.float64)
+        values = read_binds(loaded, i)
+        for slot, matrix in mended.get(i, {}).items():
+            values[slot] = matrix.T.ravel()
         values[: len(shift), 12:15] -= shift
-        replaced.append(NewValues(skin, BINDS, values.astype("<f4"), old))
+        replaced.append(NewValues(skin, BINDS, values.astype("<f4"), skin.pop(BINDS)))
     return replaced
 
 

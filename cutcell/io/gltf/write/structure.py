@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from ....errors import SkeletonError
 from ....rig import Rig, with_origin
 from ..nodes import Nodes
-from ..read.accessors import read_accessor
 from ..read.read import GltfSource, StoredPart
-from .moves import BINDS, NewValues, no_binds, own_moves
+from .moves import BINDS, NewValues, own_moves, read_binds
 
 
 def take_structure(
@@ -130,16 +129,13 @@ class _Edit:
 
     def _skin(self, part: StoredPart, replaced: list[NewValues]) -> tuple[list[int], NewValues]:
         skin, loaded = self.document["skins"][part.skin], self.source.document
-        label = loaded.label("skins", part.skin)
-        stored = loaded.json["skins"][part.skin]
-        if BINDS not in stored:
-            raise no_binds(label)
-        before = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
+        before = read_binds(loaded, part.skin)
         values = before
         for move in [move for move in replaced if move.owner is skin and move.key == BINDS]:
             values = move.values.astype(np.float64)
             replaced.remove(move)
         skin.pop(BINDS, None)
+        old = loaded.json["skins"][part.skin][BINDS]
         slots = [slot for slot, f in enumerate(part.joints) if f in self.number]
         joints = [self.number[part.joints[slot]] for slot in slots]
         like = with_origin(self.rig.skeleton, self.origin)
@@ -149,14 +145,16 @@ class _Edit:
             if max(int(self.origin[like[j]]), 0) in part.joints
         ]
         if not joints + added:
+            label = loaded.label("skins", part.skin)
             raise SkeletonError(f"of {label} no joint is left; keep at least one")
         # A skin's own space may be another than the rig's.
-        to_rig = np.linalg.inv(self.source.inverse[part.joints[0]]) @ before[0].reshape(4, 4).T
+        first = self.source.mended.get(part.skin, {}).get(0, before[0].reshape(4, 4).T)
+        to_rig = np.linalg.inv(self.source.inverse[part.joints[0]]) @ first
         rows = [values[slot] for slot in slots]
         rows += [(self.bind[j] @ to_rig).T.ravel() for j in added]
         columns = joints + added
         skin["joints"] = [self.node[j] for j in columns]
-        new = NewValues(skin, BINDS, np.array(rows).astype("<f4"), stored[BINDS])
+        new = NewValues(skin, BINDS, np.array(rows).astype("<f4"), old)
         return columns, new
 
     def _frame_above(self, f: int) -> NDArray[np.float64]:
