@@ -27,6 +27,8 @@ SOFT = 0.05
 """Of positions of a character, the distance at which one counts little for the other."""
 LEAN = 0.15
 """How far a posed character may stand from its topmost joint, which is seldom posed."""
+CONFIRMED = 0.05
+"""A topmost joint that holds nothing is right if this part of the weight agrees with it."""
 HIDDEN = 1e-2
 """A joint is hidden that is so small for the largest of its skin."""
 MAX_CANDIDATES = 256
@@ -98,13 +100,10 @@ class BoundSkin:
         shares = self.shares[at]
         return shares if shares.any() else np.ones(len(at))
 
-    def topmost(self) -> NDArray[np.float64] | None:
-        """Return where the topmost joint says that the character stands, shape (4, 4)."""
-        for k in self.order:
-            if self.is_solvable[k] and not self.mended[k] and invertible(self.skinning[k]):
-                topmost: NDArray[np.float64] = self.skinning[k]
-                return topmost
-        return None
+    def topmost(self) -> int | None:
+        """Return the topmost joint whose matrix and node can be inverted and are the file's."""
+        usable = self.is_solvable & ~self.mended & invertible(self.skinning)
+        return next((k for k in self.order if usable[k]), None)
 
     def _is_repeated(self) -> NDArray[np.bool_]:
         """Return which joints without vertices share their matrix with another one, shape (j,)."""
@@ -146,6 +145,7 @@ def mend(skins: Sequence[BoundSkin]) -> None:
 def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
     """Mend a skin of a size; `shifts` are those of all trusted joints, in sizes."""
     below = _first_below(skin)
+    far = _far_limit(skin, size, shifts)
     is_good = skin.is_held | ~skin.is_blank
     has_children = np.zeros(len(is_good), bool)
     has_children[[parent for parent in skin.parents if parent >= 0]] = True
@@ -160,8 +160,10 @@ def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
         else:
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
-        tolerance = NEAR if is_below_good else max(NEAR, float(np.median(shifts)))
-        if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shifts, tolerance):
+        tolerance = NEAR if is_below_good else max(SOFT, 2 * float(shifts.max()))
+        if skin.is_solvable[k] and not _contradicts(
+            skin, k, frame, size, shifts, tolerance if skin.is_blank[k] else far
+        ):
             continue
         if not is_below_good and skin.is_at_origin[k] and (parent >= 0 or has_children[k]):
             skin.stays[k] = skin.frames[k, :3, 3].copy()
@@ -183,6 +185,18 @@ def _first_below(skin: BoundSkin) -> list[int]:
     return first
 
 
+def _far_limit(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> float:
+    """Return how far off a joint is whose matrix is wrong, though it has one of its own."""
+    limit = max(FAR, FARTHER * float(shifts.max()))
+    own = np.flatnonzero(~skin.is_held & ~skin.is_blank)
+    if skin.stands is None or not len(own):
+        return limit
+    bound = _moved(skin.frames[own, :3, 3], skin.stands)
+    off = np.linalg.norm(bound - skin.world[own, :3, 3], axis=1) / (size * skin.scale)
+    # Where many are off, these nodes are in no pose of the bound character.
+    return limit if (off > limit).sum() <= skin.is_trusted.sum() / 2 else np.inf
+
+
 def _contradicts(
     skin: BoundSkin,
     k: int,
@@ -194,11 +208,9 @@ def _contradicts(
     """Return whether a joint's matrix is not what its node says, `frame` (4, 4), nor a pose."""
     bound = skin.frames[k]
     off = np.linalg.norm(frame[:3, 3] - bound[:3, 3]) / size
-    if not skin.is_blank[k]:
-        return bool(off > max(FAR, FARTHER * shifts.max()))
     if off > tolerance:
         return True
-    if not invertible(frame):
+    if not skin.is_blank[k] or not invertible(frame):
         return False
     change = np.linalg.solve(frame[:3, :3], bound[:3, :3])
     stretch = np.abs(np.linalg.svd(change, compute_uv=False) - 1).max()
@@ -207,18 +219,29 @@ def _contradicts(
 
 
 def rest_world(
-    matrices: NDArray, shares: NDArray, topmost: NDArray | None, corners: NDArray
+    matrices: NDArray,
+    shares: NDArray,
+    topmost: NDArray | None,
+    is_control: bool,
+    corners: NDArray,
 ) -> NDArray[np.float64]:
     """Return the matrix to the scene on which most of the vertices' weight agrees.
 
-    Of a posed character no large part may agree. Then it is that of the topmost joint, if it is
-    much the same.
+    Of a posed character no large part may agree. Then it is that of the topmost joint, `topmost`,
+    if it is much the same. A control above all is believed if the feet, say, agree with it.
 
     Shapes: matrices (j, 4, 4), shares (j,), topmost (4, 4), corners (2, 3).
     """
     chosen = agreed(matrices, shares, corners)
-    same = apart(matrices, chosen, corners) <= ORIGIN
-    if topmost is None or shares[same].sum() >= shares.sum() / 2:
+    if topmost is None:
+        return chosen
+    parts = [
+        shares[apart(matrices, one, corners) <= ORIGIN].sum() / shares.sum()
+        for one in (topmost, chosen)
+    ]
+    if is_control and parts[0] >= CONFIRMED:
+        return topmost
+    if parts[1] >= 0.5:
         return chosen
     return topmost if apart(topmost[None], chosen, corners)[0] <= LEAN else chosen
 

@@ -219,3 +219,41 @@ def test_a_mesh_bound_in_a_place_that_is_too_large_is_refused(load):
     place = "( (1e160, 0, 0, 0), (0, 1e160, 0, 0), (0, 0, 1e160, 0), (0, 0, 0, 1) )"
     with pytest.raises(cutcell.SkeletonError, match=r"^column\.usda: .* cannot be inverted"):
         load(text(place=place))
+
+
+IDENTITY = moved(0, 0, 0)
+FLAT = "( (1, 0, 0, 0), (0, 0, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) )"
+
+
+def with_end(bind, **changes):
+    """Return the column with a third joint one above the tip, which holds nothing."""
+    content = text(**changes).replace('"root/tip"]\n        uniform matrix4d[] bind', "BIND")
+    content = content.replace(
+        "BIND", '"root/tip", "root/tip/end"]\n        uniform matrix4d[] bind'
+    )
+    content = content.replace(moved(*REST[1]) + "]", f"{moved(*REST[1])}, {bind}]")
+    return content.replace(moved(0, 1, 0) + "]", f"{moved(0, 1, 0)}, {moved(0, 1, 0)}]")
+
+
+@pytest.mark.parametrize("bind", [IDENTITY, FLAT])
+@pytest.mark.parametrize("place", [IDENTITY, moved(0, 0, 3)])
+def test_a_joint_whose_bind_contradicts_its_rest_stands_at_its_rest(load, tmp_path, bind, place):
+    rig = load(with_end(bind, place=place))
+    offset = [0, 0, 3] if place != IDENTITY else [0, 0, 0]
+    places = np.array([*REST, REST[1] + [0, 1, 0]]) - offset
+    assert_allclose(rig.skeleton.joints, places, atol=1e-6)
+    assert sum('"end"' in warning for warning in rig.warnings) == 1
+    cutcell.save(tmp_path / "out.glb", rig)
+    again = cutcell.load(tmp_path / "out.glb")
+    assert_allclose(again.skeleton.joints, places, atol=1e-6)
+    assert not any('"end"' in warning for warning in again.warnings)
+
+
+def test_a_joint_with_a_good_bind_stands_there(load):
+    rig = load(with_end(moved(*REST[1] + [0, 1.5, 0])))
+    assert_allclose(rig.skeleton.joints[2], REST[1] + [0, 1.5, 0], atol=1e-6)
+
+
+def test_a_joint_that_holds_vertices_and_cannot_be_bound_is_refused(load):
+    with pytest.raises(cutcell.SkeletonError, match='"tip" cannot be inverted'):
+        load(text(tip=FLAT))

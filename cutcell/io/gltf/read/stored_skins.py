@@ -38,9 +38,11 @@ class StoredSkin:
     def stands(self, votes: Sequence[tuple[NDArray, NDArray]]) -> NDArray[np.float64]:
         """Return the matrix from its bind space to the scene, by the votes of some skins."""
         matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
-        topmost = self.bound.topmost()
+        bound, k = self.bound, self.bound.topmost()
+        topmost = None if k is None else bound.skinning[k]
         if len(shares):
-            return rest_world(matrices, shares, topmost, self.bound.corners)
+            is_control = k is not None and not bound.is_held[k]
+            return rest_world(matrices, shares, topmost, is_control, bound.corners)
         return np.eye(4) if topmost is None else topmost
 
 
