@@ -202,7 +202,7 @@ def read_weights(
 def joint_shares(
     document: Document, primitive: dict[str, Any], joints: int, user: str
 ) -> NDArray[np.float64]:
-    """Return the sum of the weights on each joint of a skin, shape (joints,), as they are stored."""
+    """Return the sum of the stored weights on each joint of a skin, shape (joints,)."""
     named = attributes(primitive, user)
     shares = np.zeros(joints)
     for n in influence_sets(named):

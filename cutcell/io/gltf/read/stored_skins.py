@@ -103,7 +103,7 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
 def _vertices(
     document: Document, nodes: Nodes, users: list[int], joints: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the sum of weights on each joint, (j,), and the corners of the vertices' box, (2, 3)."""
+    """Return the sum of weights on each joint, (j,), and the corners of a box, (2, 3)."""
     shares = np.zeros(joints)
     corners = np.array([np.full(3, np.inf), np.full(3, -np.inf)])
     for i in users:

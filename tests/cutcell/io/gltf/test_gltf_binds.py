@@ -102,7 +102,7 @@ def test_a_root_at_the_origin_stays_there(loaded):
 
 def test_a_joint_of_a_flat_skin_stands_by_where_the_others_say(loaded):
     rig = loaded(limb((2,), np.eye(4), parents=(-1,) * 5, offset=(3, 0, 0)))
-    assert_allclose(rig.skeleton.joints, PLACES + [3, 0, 0], atol=1e-6)
+    assert_allclose(rig.skeleton.joints, PLACES + np.array([3, 0, 0]), atol=1e-6)
     assert_allclose(rig.world, moved(-3, 0, 0), atol=1e-6)
 
 
@@ -178,7 +178,7 @@ def two_limbs(first, second):
     other = [
         builder.node(6 if above < 0 else 7 + above, name=f"other {k}", translation=t.tolist())
         for k, (above, t) in enumerate(
-            zip((-1, 0), (REST[0] + [4, 0, 0], REST[1] - REST[0]), strict=True)
+            zip((-1, 0), (REST[0] + np.array([4, 0, 0]), REST[1] - REST[0]), strict=True)
         )
     ]
     joints = np.zeros((12, 4), "u1")
@@ -201,8 +201,10 @@ def two_limbs(first, second):
 @pytest.mark.parametrize("linear", [np.eye(3), np.diag([-100.0, 100, 100]), 100 * TURN_X[:3, :3]])
 def test_skins_that_share_only_a_bad_joint_meet_in_the_scene(loaded, linear):
     rig = loaded(two_limbs(np.eye(3), linear))
-    assert_allclose(rig.mesh.vertices, np.concatenate([COLUMN, COLUMN + [4, 0, 0]]), atol=1e-4)
-    assert_allclose(rig.skeleton.joints[3:], REST + [4, 0, 0], atol=1e-4)
+    assert_allclose(
+        rig.mesh.vertices, np.concatenate([COLUMN, COLUMN + np.float32([4, 0, 0])]), atol=1e-4
+    )
+    assert_allclose(rig.skeleton.joints[3:], REST + np.array([4, 0, 0]), atol=1e-4)
 
 
 def test_a_joint_that_another_skin_knows_better_is_taken_from_there(loaded):
