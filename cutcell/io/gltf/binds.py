@@ -158,6 +158,7 @@ def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
         if is_below_good:
             frame = skin.frames[parent] @ skin.relative[k]
         else:
+            assert skin.stands is not None
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
         tolerance = NEAR if is_below_good else max(SOFT, 2 * float(shifts.max()))

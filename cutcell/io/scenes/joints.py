@@ -137,7 +137,7 @@ def _bound(
     points = vertices @ place[:3, :3].T + place[:3, 3]
     return BoundSkin(
         skin.inverse @ _inverse(place)[0],
-        np.bincount(columns[used], np.minimum(values[used], 1.0), len(skin.joints)),
+        np.bincount(columns[used], np.minimum(values[used], 1.0), len(skin.joints)).astype(float),
         world[skin.joints],
         np.array(relative),
         [number[a] for a in above],

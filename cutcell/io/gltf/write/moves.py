@@ -65,7 +65,7 @@ class NewValues:
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)
-    mended = _needed(rig, by.any(axis=1))
+    mended = _needed(rig, np.any(by != 0, axis=1))
     if not by.any() and not mended:
         return []
     nodes = Nodes(source.document)
@@ -132,14 +132,15 @@ def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
 
 def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArray]]:
     """Return the mended matrices that must be saved: of joints that are moved or hold a vertex."""
-    source = rig.source
+    source, weights = rig.source, rig.weights
+    assert weights is not None
     origin = np.arange(len(is_moved)) if rig.origin is None else rig.origin
     needed: dict[int, dict[int, NDArray]] = {}
     for part in source.parts:
         mended = source.mended.get(part.skin, {})
         is_held = np.zeros(len(is_moved), bool)
         if mended:
-            columns = np.flatnonzero((origin >= 0) & rig.weights[part.rows].any(axis=0))
+            columns = np.flatnonzero((origin >= 0) & weights[part.rows].any(axis=0))
             is_held[origin[columns]] = True
         rows = {k: m for k, m in mended.items() if (is_held | is_moved)[part.joints[k]]}
         if rows:
