@@ -135,7 +135,10 @@ def mend(skins: Sequence[BoundSkin]) -> None:
     if not skins:
         return
     boxes = np.concatenate([skin.box() for skin in skins])
-    size = float(np.ptp(boxes, axis=0).max()) or 1.0
+    size = float(np.ptp(boxes, axis=0).max())
+    if not size:  # skins without a mesh
+        places = np.concatenate([skin.world[:, :3, 3] for skin in skins])
+        size = float(np.ptp(places, axis=0).max()) or 1.0
     shifts = np.concatenate([skin.shifts() for skin in skins]) / size
     for skin in skins:
         if skin.is_trusted.any():
