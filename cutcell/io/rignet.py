@@ -17,7 +17,7 @@ from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Part, Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
-from .materials.obj_materials import ColouredObj
+from .materials.obj_materials import ObjSource
 from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
 from .names import whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
@@ -59,13 +59,13 @@ def read_rignet(path: Path) -> Rig:
     text = read_text(path)  # before its mesh is looked for: it may not be there at all
     obj = mesh_file(path)
     with naming(obj):
-        lines = read_text(obj)
-        mesh = parse_obj(lines)
+        contents = parse_obj(read_text(obj))
+        mesh = contents.mesh
     with naming(path):
-        contents = _parse(text)
-        skeleton_names = tuple(contents.positions)
-        read = _weights(contents, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton, weights, warnings = with_deform(mesh, _skeleton(contents), read.weights)
+        rig_text = _parse(text)
+        skeleton_names = tuple(rig_text.positions)
+        read = _weights(rig_text, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
+        skeleton, weights, warnings = with_deform(mesh, _skeleton(rig_text), read.weights)
         return Rig(
             mesh,
             skeleton,
@@ -77,7 +77,7 @@ def read_rignet(path: Path) -> Rig:
                 *sum_warnings(read.sums, mesh.faces, [Part(obj.stem, slice(None))]),
             ),
             weight_sums=read.sums,
-            source=ColouredObj.of(obj, lines, mesh),
+            source=ObjSource(obj, contents),
         )
 
 
@@ -191,7 +191,7 @@ def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
     if not os.path.lexists(obj):
         return False
     with suppress(CutcellError):
-        existing = parse_obj(read_text(obj))
+        existing = parse_obj(read_text(obj)).mesh
         same = np.array_equal(existing.vertices, mesh.vertices)
         if same and np.array_equal(existing.faces, mesh.faces):
             return True

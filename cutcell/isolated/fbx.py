@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 import ufbx
 
+from ..geometry.polygons import cut_polygons
 from .fbx_kept import keep, kept
-from .fbx_materials import FbxPalette, surface
+from .fbx_materials import FbxPalette, stored, surface
 
 FRAMES_A_SECOND = 30.0
-MAX_TRIANGLES_OF_A_FACE = 10_000
 
 
 def read(data):
@@ -45,8 +45,7 @@ def read(data):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
             continue
-        corners, polygons = triangles(mesh)
-        shape = geometry(mesh, corners)
+        shape, corners, polygons = geometry(mesh)
         skins = kept(mesh.skin_deformers)
         name = places[0].name or mesh.name
         if skins and len(places) > 1:
@@ -84,6 +83,7 @@ def options():
         "geometry_transform_handling": ufbx.GeometryTransformHandling.PRESERVE,
         "inherit_mode_handling": ufbx.InheritModeHandling.HELPER_NODES,
         "index_error_handling": ufbx.IndexErrorHandling.ABORT_LOADING,
+        "generate_missing_normals": True,
     }
 
 
@@ -99,24 +99,33 @@ def transform(one):
     return [*one.translation, *one.rotation, *one.scale]
 
 
-def triangles(mesh):
-    """Cut polygons into fans; return corners by the mesh's numbers, and the polygon of each."""
-    begin, count = np.array([tuple(face) for face in mesh.faces]).T
-    fans = []
-    for k in range(1, min(int(count.max()), MAX_TRIANGLES_OF_A_FACE) - 1):
-        polygons = np.flatnonzero(count > k + 1)
-        start = begin[polygons]
-        fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))
-    rows = np.concatenate(fans) if fans else np.zeros((0, 4), int)
-    rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    return rows[:, :3], rows[:, 3]
-
-
-def geometry(mesh, corners):
-    """Return a mesh's control points, and its triangles."""
+def geometry(mesh):
+    """Return a mesh's arrays, the corners of its triangles by its own numbers, and the polygons."""
     vertices = np.array(list(mesh.vertex_indices), int)
     points = np.array([tuple(point) for point in mesh.vertices], float).reshape(-1, 3)
-    return {"vertices": points, "faces": vertices[corners]}
+    counts = np.array([face.num_indices for face in mesh.faces], int)
+    corners, polygons = cut_polygons(points, vertices, counts)
+    arrays = {"vertices": points, "faces": vertices[corners], "dropped": dropped(mesh)}
+    if mesh.vertex_normal.exists and (not mesh.generated_normals or is_smoothed(mesh)):
+        values, indices = stored(mesh.vertex_normal)
+        arrays["normals"] = values[indices[corners]].astype(np.float32)
+    return arrays, corners, polygons
+
+
+def is_smoothed(mesh):
+    """Return whether a file says which edges of a mesh are smooth."""
+    return bool(len(mesh.face_smoothing) or len(mesh.edge_smoothing))
+
+
+def dropped(mesh):
+    """Return what of a mesh is not read."""
+    parts = {
+        "morph targets": len(mesh.blend_deformers),
+        "texture coordinates after the first set": len(mesh.uv_sets) > 1,
+        "vertex colours after the first set": len(mesh.color_sets) > 1,
+        "tangents": mesh.vertex_tangent.exists,
+    }
+    return np.array([part for part, exists in parts.items() if exists], np.str_)
 
 
 def influences(skins, place):

@@ -105,11 +105,12 @@ def surface(mesh, node, corners, polygons, palette):
         colors = values[indices[corners]][..., :3]
         arrays["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
     textured = [k for k in np.unique(material) if k >= 0 and palette.textures[k] is not None]
-    if textured and mesh.vertex_uv.exists:
+    if mesh.vertex_uv.exists:
         sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
         names = {palette.textures[k].uv_set for k in textured}
         coordinates = {name: stored(sets.get(name) or mesh.vertex_uv) for name in names}
-        places = np.zeros((*corners.shape, 2), np.float32)
+        values, indices = stored(mesh.vertex_uv)
+        places = upper_left(values[indices[corners]]).astype(np.float32)
         for k in textured:
             texture, rows = palette.textures[k], np.flatnonzero(material == k)
             values, indices = coordinates[texture.uv_set]
@@ -129,4 +130,9 @@ def in_image(uv, texture):
     if texture.has_uv_transform:
         columns = np.array([tuple(column) for column in texture.uv_to_texture])
         uv = uv @ columns[:2, :2] + columns[3, :2]
+    return upper_left(uv)
+
+
+def upper_left(uv):
+    """Return texture coordinates from the upper left corner of an image, shape (..., 2)."""
     return np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)

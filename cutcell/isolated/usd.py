@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
+from ..geometry.polygons import cut_polygons
+from .usd_corners import corner_arrays
 from .usd_materials import UsdPalette, surface
 
 
@@ -144,10 +146,11 @@ class Scene:
             self.meshes.append((prim.GetName(), len(self.nodes)))
             self.nodes.append((prim.GetName(), 0, [0, 0, 0, 0, 0, 0, 1, 1, 1, 1], hidden, False))
             place = matrix(self.places.GetLocalToWorldTransform(prim))
-            faces, corners, polygons = triangles(UsdGeom.Mesh(prim))
-            arrays = {"vertices": np.array(points, float), "faces": faces}
-            if len(faces) and faces.max() < len(points):  # else it is refused
-                arrays |= surface(prim, corners, polygons, faces, self.palette)
+            vertices = np.array(points, float)
+            triangles = faces, corners, polygons = cut(UsdGeom.Mesh(prim), vertices)
+            arrays = {"vertices": vertices, "faces": faces}
+            arrays |= corner_arrays(prim, *triangles)
+            arrays |= surface(prim, corners, polygons, faces, self.palette, arrays.get("places"))
             if prim.GetPath() in self.bound:
                 target, query, first = self.bound[prim.GetPath()]
                 # Joints were bound in their skeleton's own space, and the mesh goes there.
@@ -178,27 +181,22 @@ class Scene:
         )
 
 
-def triangles(mesh):
-    """Cut a mesh's polygons into fans of triangles, counter-clockwise.
+def cut(mesh, points):
+    """Cut a mesh's polygons into triangles, counter-clockwise.
 
     Returns shapes faces, corners (m, 3), polygons (m,).
     """
     count = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], int)
-    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], int)
-    if len(count) and (count.min() < 0 or count.sum() > len(corners)):
-        raise RuntimeError(f"mesh {mesh.GetPrim().GetName()} lacks corners of its faces")
-    begin = np.cumsum(count) - count
-    fans = [np.zeros((0, 4), int)]
-    for k in range(1, int(count.max(initial=0)) - 1):
-        polygons = np.flatnonzero(count > k + 1)
-        start = begin[polygons]
-        fans.append(np.stack([polygons, start, start + k, start + k + 1], axis=1))
-    rows = np.concatenate(fans)
-    rows = rows[np.argsort(rows[:, 1], kind="stable")]
-    polygons, at = rows[:, 0], rows[:, 1:]
+    vertices = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], int)
+    name = mesh.GetPrim().GetName()
+    if len(count) and (count.min() < 0 or count.sum() > len(vertices)):
+        raise RuntimeError(f"mesh {name} lacks corners of its faces")
+    if len(vertices) and (vertices.min() < 0 or vertices.max() >= len(points)):
+        raise RuntimeError(f"mesh {name}: a face uses a vertex out of its {len(points)}")
+    corners, polygons = cut_polygons(points, vertices, count)
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
-        at = at[:, ::-1]
-    return corners[at], at, polygons
+        corners = corners[:, ::-1]
+    return vertices[corners], corners, polygons
 
 
 def unbound(bind):

@@ -13,6 +13,7 @@ from pxr import Usd, UsdGeom, UsdShade
 
 from ..runtime.colors import srgb
 from .palette import Palette
+from .usd_corners import at_corners, upper_left
 
 LARGEST = 2**28
 """Bytes of an image in a package."""
@@ -98,10 +99,11 @@ def reader_of(texture):
     return "st"
 
 
-def surface(prim, corners, polygons, faces, palette):
+def surface(prim, corners, polygons, faces, palette, places):
     """Return what colours the triangles of a mesh.
 
-    Shapes: corners (m, 3), polygons (m,), faces (m, 3).
+    Shapes: corners (m, 3), polygons (m,), faces (m, 3), places (m, 3, 2): the first texture
+    coordinates, None for none. Those of a material's image take their place.
     """
     binding = UsdShade.MaterialBindingAPI(prim)
     material = np.full(len(faces), palette.number(binding.ComputeBoundMaterial()[0]))
@@ -114,28 +116,11 @@ def surface(prim, corners, polygons, faces, palette):
     colors = at_corners(primvars, "displayColor", 3, corners, polygons, faces)
     if colors is not None and (material < 0).all():
         arrays["colors"] = srgb(colors)
-    places = np.zeros((len(faces), 3, 2), np.float32)
+    places = np.zeros((*faces.shape, 2), np.float32) if places is None else places
     for k in np.unique(material[material >= 0]).tolist():
         rows = np.flatnonzero(material == k)
         uv = at_corners(primvars, palette.readers[k], 2, corners[rows], polygons[rows], faces[rows])
         if palette.readers[k] and uv is not None:
-            places[rows] = np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)
+            places[rows] = upper_left(uv)
             arrays["places"] = places
     return arrays
-
-
-def at_corners(primvars, name, width, corners, polygons, faces):
-    """Return a primvar at corners, shape (m, 3, width); None where it has none that fits."""
-    primvar = primvars.FindPrimvarWithInheritance(name) if name else None
-    if not primvar:
-        return None
-    values = np.array(primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) or [], float)
-    if values.ndim != 2 or values.shape[1] != width:
-        return None
-    how = primvar.GetInterpolation()
-    at = {
-        UsdGeom.Tokens.constant: np.zeros_like(faces),
-        UsdGeom.Tokens.uniform: np.repeat(polygons[:, None], 3, axis=1),
-        UsdGeom.Tokens.faceVarying: corners,
-    }.get(how, faces)
-    return values[at] if at.size and at.max() < len(values) else None

@@ -1,4 +1,4 @@
-"""Base colours for a glTF document that cutcell made itself, with one plain material."""
+"""Base colours, normals and texture coordinates for a glTF document that cutcell made itself."""
 
 from __future__ import annotations
 
@@ -14,42 +14,55 @@ from ...rig import Rig
 from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document
 from ..gltf.read.accessors import find_accessor
+from .corners import Corners, join_corners, surface_piece
 from .face_colors import Collected, FaceColors, face_colors
 from .gltf_images import image_notes
 from .gltf_palette import Group, Palette, Uses, attributes_of
 from .surfaces import SurfacePaint, Surfaces
-from .transfer import has_materials, read_materials
+from .transfer import has_materials, read_corners, read_materials
 
 
-def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter | None:
-    """Give a new document the base colours of a rig's file."""
+class _Look(NamedTuple):
+    """What a file gives the faces of a mesh."""
+
+    colors: FaceColors | None
+    corners: Corners
+
+
+def with_rig_looks(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter:
+    """Give a new document the base colours of a rig's file, its normals and texture coordinates."""
     materials = read_materials(rig) if has_materials(rig) else None
-    if materials is None:
-        return None
-    meshes = dict(enumerate([materials.body, *materials.attachments]))
-    return _colored(
-        document, data, meshes, Uses(materials.layers, materials.images, materials.names)
-    )
+    looks, uses = {0: _Look(None, read_corners(rig))}, Uses([], [], [])
+    if materials is not None:
+        uses = Uses(materials.layers, materials.images, materials.names)
+        looks[0] = looks[0]._replace(colors=materials.body)
+        for number, colors in enumerate(materials.attachments, start=1):
+            looks[number] = _Look(colors, Corners())
+    return _with_looks(document, data, looks, uses)
 
 
-def with_surface_colors(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
-    """Give a document that was made of another format the base colours of that file."""
-    if surfaces is None or not surfaces.coloured:
+def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
+    """Give a document that was made of another format what that file gives its faces."""
+    if surfaces is None:
         return buffer
     document, data = buffer.document, buffer.finish()
     collected = Collected(surfaces.notes)
     paint = SurfacePaint(surfaces, collected)
     view = Document(surfaces.path, document, [data])
-    meshes = {}
+    looks = {}
     for number, surface in surfaces.meshes.items():
+        (primitive,) = document["meshes"][number]["primitives"]
+        vertices = _raw(view, primitive["attributes"]["POSITION"])
         faces = _faces(view, number)
-        piece = surface, 0, slice(0, len(faces))
-        colors = face_colors(faces, [piece], paint)
-        if colors is not None:
-            meshes[number] = colors
-    return _colored(
-        document, data, meshes, Uses(list(collected.layers), collected.images, collected.names)
-    )
+        everything = slice(0, len(faces))
+        colors = None
+        if surfaces.coloured and surface.is_painted:
+            colors = face_colors(faces, [(surface, 0, everything)], paint)
+        piece = surface_piece(surface, faces, everything)
+        corners = join_corners(vertices, faces, [] if piece is None else [piece])
+        looks[number] = _Look(colors, corners)
+    uses = Uses(list(collected.layers), collected.images, collected.names)
+    return _with_looks(document, data, looks, uses)
 
 
 def color_notes(rig: Rig) -> tuple[str, ...]:
@@ -75,16 +88,19 @@ class _Mesh(NamedTuple):
     faces : array, shape (m, 3)
     groups : list of Group
         Empty where the mesh keeps the plain material.
+    has_places : bool
+        Whether all groups have texture coordinates.
     """
 
     old: dict[str, int]
     arrays: dict[str, NDArray]
     faces: NDArray[np.intp]
     groups: list[Group]
+    has_places: bool
 
 
-def _colored(
-    document: dict[str, Any], data: bytes, meshes: Mapping[int, FaceColors], uses: Uses
+def _with_looks(
+    document: dict[str, Any], data: bytes, looks: Mapping[int, _Look], uses: Uses
 ) -> BufferWriter:
     """Return the writer of a document each of whose meshes has one primitive.
 
@@ -92,7 +108,8 @@ def _colored(
     """
     view, palette = Document(Path(), document, [data]), Palette(uses)
     count = len(document["meshes"])
-    new_meshes = [_take(view, number, meshes.get(number), palette) for number in range(count)]
+    none = _Look(None, Corners())
+    new_meshes = [_take(view, number, looks.get(number, none), palette) for number in range(count)]
     buffer = BufferWriter(document, [data], [i for mesh in new_meshes for i in mesh.old.values()])
     plain = palette.store(buffer)
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
@@ -107,7 +124,7 @@ def _colored(
     return buffer
 
 
-def _take(view: Document, number: int, colors: FaceColors | None, palette: Palette) -> _Mesh:
+def _take(view: Document, number: int, look: _Look, palette: Palette) -> _Mesh:
     """Take out of a mesh what is to be stored anew."""
     (primitive,) = view.json["meshes"][number]["primitives"]
     named = primitive["attributes"]
@@ -115,20 +132,41 @@ def _take(view: Document, number: int, colors: FaceColors | None, palette: Palet
     faces, origin = _faces(view, number).astype(np.intp), np.arange(count)
     old: dict[str, int] = {}
     arrays: dict[str, NDArray] = {}
-    groups: list[Group] = []
-    if colors is not None:
-        groups, values = palette.groups(colors)
-        faces, origin = split_at_seams(faces, count, values)
-        of_vertex = np.zeros((len(origin), values.shape[2]), np.float32)
-        of_vertex[faces] = values
-        arrays |= attributes_of(groups, of_vertex)
+    groups, values = palette.groups(look.colors) if look.colors is not None else ([], None)
+    normals, places = look.corners
+    columns = [] if values is None else [values]
+    if places is not None:
+        uv = places + 0.0  # -0 is 0
+        for group in groups:  # an image may be placed, or have other coordinates
+            if group.textured and values is not None:
+                uv[group.rows] = values[group.rows, :, :2]
+        columns.append(uv)
+    columns += [] if normals is None else [normals]
+    if columns:
+        faces, origin = split_at_seams(faces, count, np.concatenate(columns, axis=2))
+        of_vertex = [_per_vertex(faces, one, len(origin)) for one in columns]
+        if normals is not None:
+            arrays["NORMAL"] = of_vertex.pop()
+            arrays["NORMAL"][~arrays["NORMAL"].any(axis=1), 1] = 1  # no face has the vertex
+        if places is not None:
+            arrays["TEXCOORD_0"] = of_vertex.pop()
+        if of_vertex:
+            arrays = {**dict(attributes_of(groups, of_vertex[0])), **arrays}
         old["indices"] = primitive.pop("indices")
     is_split = len(origin) > count
     for name in sorted(named, key=_is_weight):
-        if is_split or _is_weight(name):
+        if is_split or _is_weight(name) or name in arrays:
             old[name] = named.pop(name)
-            arrays[name] = _raw(view, old[name])[origin]
-    return _Mesh(old, arrays, faces, groups)
+            if name not in arrays:
+                arrays[name] = _raw(view, old[name])[origin]
+    return _Mesh(old, arrays, faces, groups, places is not None)
+
+
+def _per_vertex(faces: NDArray, values: NDArray[np.float32], count: int) -> NDArray[np.float32]:
+    """Return values of corners by vertex, zero where no face has it; (m, 3, k) to (count, k)."""
+    of_vertex = np.zeros((count, values.shape[2]), np.float32)
+    of_vertex[faces] = values
+    return of_vertex
 
 
 def split_at_seams(
@@ -160,8 +198,8 @@ def split_at_seams(
 def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, plain: int) -> None:
     """Store all of a mesh but its weights; its primitives have their vertices in common."""
     (primitive,) = primitives
-    if not mesh.groups:
-        primitive["material"] = plain
+    primitive["material"] = plain
+    if "indices" not in mesh.old:
         return
     named = primitive["attributes"]
     for name, values in mesh.arrays.items():
@@ -176,9 +214,10 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
     count = buffer.accessors[named["POSITION"]]["count"]
     kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
     primitives.clear()
-    for k, group in enumerate(mesh.groups):
+    everything = Group(plain, np.arange(len(mesh.faces)), mesh.has_places, varied=False)
+    for k, group in enumerate(mesh.groups or [everything]):
         corners = mesh.faces[group.rows].reshape(-1, 1).astype(kind)
-        uses = {"TEXCOORD_0": group.textured, "COLOR_0": group.varied}
+        uses = {"TEXCOORD_0": group.textured or mesh.has_places, "COLOR_0": group.varied}
         primitives.append({
             **primitive,
             "attributes": {name: at for name, at in named.items() if uses.get(name, True)},

@@ -1,4 +1,4 @@
-"""Materials of formats that tell them by face and corner: OBJ, FBX and others that are no glTF."""
+"""Materials and corners of formats that list them by face: OBJ, FBX and others that are no glTF."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The materials of a mesh's faces.
+    """The materials of a mesh's faces, and what their corners have.
 
     Parameters
     ----------
@@ -31,12 +31,20 @@ class Surface:
         Position of each corner in the image, from its upper left corner.
     colors : array, shape (m, 3, 3), uint8, optional
         Of each corner, sRGB.
+    normals : array, shape (m, 3, 3), float32, optional
+        Of each corner, of any length; zero or not finite where there is none.
     """
 
     faces: NDArray[np.int32]
     material: NDArray[np.int32]
     places: NDArray[np.float32] | None = None
     colors: NDArray[np.uint8] | None = None
+    normals: NDArray[np.float32] | None = None
+
+    @property
+    def is_painted(self) -> bool:
+        """Whether faces have materials, or corners colours."""
+        return self.colors is not None or bool((self.material >= 0).any())
 
 
 @dataclass(frozen=True)
@@ -112,13 +120,14 @@ class Surfaces:
     @cached_property
     def coloured(self) -> bool:
         """Whether there is more to see than one grey."""
-        used = {int(k) for one in self.meshes.values() for k in np.unique(one.material)}
+        painted = [one for one in self.meshes.values() if one.is_painted]
+        used = {int(k) for one in painted for k in np.unique(one.material)}
         materials = [self.materials[k] for k in used if k >= 0]
         if any(one.image >= 0 for one in materials):
             return True
         shades = {one.color for one in materials} | ({WHITE} if -1 in used else set())
         grey = len(shades) == 1 and all(len(set(shade)) == 1 for shade in shades)
-        return (bool(shades) and not grey) or any(_varied(one) for one in self.meshes.values())
+        return (bool(shades) and not grey) or any(map(_varied, painted))
 
 
 def _varied(surface: Surface) -> bool:
@@ -179,18 +188,16 @@ class SurfacePaint:
 
 def scene_surfaces(
     scene: Mapping[str, NDArray], path: Path, numbers: Mapping[int, int]
-) -> Surfaces | None:
-    """Return the materials of a scene of another format, None if it has none.
+) -> Surfaces:
+    """Return the materials of a scene of another format, and what corners have.
 
     Of materials: `material_names`, `material_values` (k, 4: red, green, blue, sRGB, and opacity)
     and `material_uses` (k, 2: image or -1, and whether its alpha is used); the image replaces the
     colour. Of images: `image_files` (i, names that a file beside may have), and the content of
-    those that are embedded, `image_I_content`. Of each mesh K with materials: `mesh_K_materials`
-    (m,), and perhaps `mesh_K_places` and `mesh_K_colors`; see `Surface`.
+    those that are embedded, `image_I_content`. Of each mesh K perhaps `mesh_K_materials` (m,),
+    `mesh_K_places`, `mesh_K_colors` and `mesh_K_normals`; see `Surface`.
     """
-    meshes = {number: _surface(scene, k) for k, number in numbers.items() if _is_coloured(scene, k)}
-    if not meshes:
-        return None
+    meshes = {number: _surface(scene, k) for k, number in numbers.items()}
     materials = [
         Material(str(name), tuple(values[:3]), int(image), values[3], bool(cut), True)
         for name, values, (image, cut) in zip(
@@ -207,17 +214,11 @@ def scene_surfaces(
     return Surfaces(path, meshes, tuple(materials), tuple(images))
 
 
-def _is_coloured(scene: Mapping[str, NDArray], k: int) -> bool:
-    return f"mesh_{k}_colors" in scene or bool((scene.get(f"mesh_{k}_materials", _NONE) >= 0).any())
-
-
-_NONE = np.zeros(0, int)
-
-
 def _surface(scene: Mapping[str, NDArray], k: int) -> Surface:
     faces = scene[f"mesh_{k}_faces"].astype(np.int32)
-    material = scene[f"mesh_{k}_materials"].astype(np.int32)
-    return Surface(faces, material, scene.get(f"mesh_{k}_places"), scene.get(f"mesh_{k}_colors"))
+    material = scene.get(f"mesh_{k}_materials", np.full(len(faces), -1)).astype(np.int32)
+    corners = {key: scene.get(f"mesh_{k}_{key}") for key in ("places", "colors", "normals")}
+    return Surface(faces, material, **corners)
 
 
 def image_label(image: ImageFile) -> str:

@@ -1,19 +1,31 @@
-"""The base colours that a rig's file gives it: glTF's materials, or those of other formats."""
+"""Base colours, normals and texture coordinates that a rig's file gives it, of any format."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
+import numpy as np
+
+from ...errors import CutcellError
 from ...rig import Rig
 from ..gltf.bare import BareSource
 from ..gltf.container import Document
-from ..gltf.read.primitives import primitives, read_triangles
+from ..gltf.read.accessors import read_accessor
+from ..gltf.read.primitives import (
+    StoredFaces,
+    primitives,
+    read_faces,
+    read_positions,
+    read_triangles,
+)
 from ..gltf.read.read import GltfSource
+from .corners import Corners, Piece, join_corners, surface_piece
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
-from .obj_materials import ColouredObj
-from .surfaces import SurfacePaint, Surfaces
+from .obj_materials import ObjSource
+from .surfaces import Surface, SurfacePaint, Surfaces
 
 BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
@@ -41,6 +53,8 @@ def read_materials(rig: Rig) -> Materials | None:
     """
     source = _source(rig)
     if isinstance(source, Surfaces):
+        if not any(surface.is_painted for surface in source.meshes.values()):
+            return None
         collected = Collected(source.notes)
         pieces = [(surface, 0, slice(0, len(rig.mesh.faces))) for surface in source.meshes.values()]
         body = face_colors(rig.mesh.faces, pieces, SurfacePaint(source, collected))
@@ -65,8 +79,46 @@ def read_materials(rig: Rig) -> Materials | None:
     return _complete(body, hung, collected)
 
 
+def read_corners(rig: Rig) -> Corners:
+    """Return normals and texture coordinates that a rig's file gives the corners of its body.
+
+    Those of a `GltfSource` remain in its document.
+    """
+    source, faces = _source(rig), rig.mesh.faces
+    pieces: list[Piece | None] = []
+    if isinstance(source, Surfaces):
+        everything = slice(0, len(faces))
+        pieces = [surface_piece(one, faces, everything) for one in source.meshes.values()]
+    elif isinstance(source, BareSource):
+        world = {first: one.world for one in source.stored for first in one.first_vertices}
+        for one in source.faces:
+            if one.rows.stop > len(faces):  # the mesh is another one
+                return Corners()
+            surface = _stored_surface(source.document, one)
+            if surface is not None:
+                own = faces[one.rows] - one.first_vertex
+                pieces.append(surface_piece(surface, own, one.rows, world[one.first_vertex]))
+    return join_corners(rig.mesh.vertices, faces, [one for one in pieces if one is not None])
+
+
+def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
+    """Return what the file of a document stores of the faces of a primitive."""
+    if document.surfaces is not None:
+        return document.surfaces.meshes.get(one.mesh)
+    primitive = primitives(document, one.mesh, "the document")[one.primitive]
+    named, corners = primitive["attributes"], {}
+    count = len(read_positions(document, primitive, "the document"))
+    faces = read_faces(document, primitive, count, "the document")
+    for key, name, kind in (("normals", "NORMAL", "VEC3"), ("places", "TEXCOORD_0", "VEC2")):
+        if name in named:
+            with suppress(CutcellError):
+                values = read_accessor(document, named[name], kind, "the document")
+                corners[key] = np.asarray(values, np.float32)[faces]
+    return Surface(faces.astype(np.int32), np.full(len(faces), -1, np.int32), **corners)
+
+
 def _source(rig: Rig) -> Any:
-    return rig.source.surfaces if isinstance(rig.source, ColouredObj) else rig.source
+    return rig.source.surfaces if isinstance(rig.source, ObjSource) else rig.source
 
 
 def _complete(

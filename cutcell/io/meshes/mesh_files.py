@@ -13,7 +13,7 @@ from ...errors import FileError, MeshError
 from ...rig import Rig, Skeleton, TriangleMesh
 from ..deforming import with_deform
 from ..files import one_line, read_bytes, read_text
-from ..materials.obj_materials import ColouredObj
+from ..materials.obj_materials import ObjSource
 from ..materials.surfaces import Surface, Surfaces
 from .obj import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
@@ -35,15 +35,14 @@ def read_soup(path: Path, bare: bool = False) -> Rig:
     return Rig(mesh, joints, name=path.stem, warnings=tuple(warnings), source=surfaces)
 
 
-def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | ColouredObj | None]:
+def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | ObjSource | None]:
     """Read a mesh with every vertex in the file's order, and what colours it, if anything does.
 
     A binary STL has no shared vertices: each triangle brings its own three.
     """
     if path.suffix.lower() == ".obj":
-        text = read_text(path)
-        mesh = parse_obj(text)  # names the line that is wrong
-        return mesh, ColouredObj.of(path, text, mesh)
+        contents = parse_obj(read_text(path))  # names the line that is wrong
+        return contents.mesh, ObjSource(path, contents)
     loaded = _through_trimesh(read_bytes(path), path.suffix.lower()[1:])
     mesh = TriangleMesh(np.asarray(loaded.vertices), np.asarray(loaded.faces))
     return mesh, _coloured(path, mesh, loaded.visual)

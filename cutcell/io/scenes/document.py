@@ -8,7 +8,8 @@ A scene comes as arrays by name. Of k nodes, the root being the first: `node_nam
 nodes), `mesh_K_inverse` (j, 4, 4) and its weights as `mesh_K_rows`, `_columns` and `_values`. Of
 clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `PATHS`) and
 number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
-`scene_surfaces` says what may be there of materials.
+`mesh_K_dropped` names what of a mesh is not read. `scene_surfaces` says what may be there of
+materials and corners.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import FileError, MeshError
+from ...runtime.display import listed
 from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
 from ..gltf.influences import sorted_influences, store_influences
@@ -58,6 +60,16 @@ def scene_document(
         names = [str(scene["node_names"][node]) for node in placed]
         document.warnings.append(mended_warning(names))
     return document
+
+
+def dropped_note(scene: Mapping[str, NDArray]) -> str:
+    """Return what a scene's file has and the scene has not, with the names of the meshes."""
+    owners: dict[str, list[str]] = {}
+    for k, name in enumerate(scene["mesh_names"].tolist()):
+        for part in scene[f"mesh_{k}_dropped"].tolist():
+            owners.setdefault(part, []).append(name)
+    parts = [f"{part} ({listed(names)})" for part, names in owners.items()]
+    return f"; not read: {', '.join(parts)}" if parts else ""
 
 
 class _SceneBuilder(GltfBuilder):

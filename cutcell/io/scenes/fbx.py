@@ -14,7 +14,7 @@ from ...rig import Rig
 from ...runtime.display import listed
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
-from .document import scene_document
+from .document import dropped_note, scene_document
 from .joints import scene_world
 
 BINARY = b"Kaydara FBX Binary"
@@ -22,9 +22,9 @@ SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
 MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
 """Memory limit of the reader. A byte of text takes some 20; arrays may be packed."""
 LOST = (
-    "of an FBX, the meshes, skeleton, weights and clips are read, and of its materials the base "
-    "colours with their images; it is saved as a GLB without what else its materials have, and "
-    "without morph targets"
+    "of an FBX, the meshes, skeleton, weights and clips are read, with normals, texture "
+    "coordinates, and of its materials the base colours with their images; it is saved as a GLB "
+    "without what else its materials have"
 )
 
 
@@ -32,7 +32,7 @@ def read_fbx(path: Path, accessories: bool = False) -> Rig:
     """Load an FBX file; see `cutcell.load`."""
     scene = fbx_scene(path)
     document = scene_document(scene, path, "cutcell, from FBX")
-    document.warnings += [LOST, *map(str, scene.get("notes", ()))]
+    document.warnings += [LOST + dropped_note(scene), *map(str, scene.get("notes", ()))]
     return read_rig(document, path, scene_world(scene), accessories, why_bare=_why_bare(scene))
 
 

@@ -13,15 +13,15 @@ from ...isolated.run import WorkFailedError, run_isolated
 from ...rig import Rig
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
-from .document import scene_document
+from .document import dropped_note, scene_document
 from .joints import scene_world
 
 USD = (".usd", ".usda", ".usdc", ".usdz")
 SECONDS, MEMORY = 120.0, 2**32
 LOST = (
-    "of a USD, the meshes, skeletons, weights and motion are read, and of its materials the base "
-    "colours with their images; it is saved as a GLB without what else its materials have, and "
-    "without blend shapes"
+    "of a USD, the meshes, skeletons, weights and motion are read, with normals, texture "
+    "coordinates, and of its materials the base colours with their images; it is saved as a GLB "
+    "without what else its materials have"
 )
 
 
@@ -29,7 +29,7 @@ def read_usd(path: Path, accessories: bool = False) -> Rig:
     """Load a USD file; see `cutcell.load`."""
     scene = usd_scene(path)
     document = scene_document(scene, path, "cutcell, from USD")
-    document.warnings.append(LOST)
+    document.warnings.append(LOST + dropped_note(scene))
     return read_rig(document, path, scene_world(scene), accessories)
 
 

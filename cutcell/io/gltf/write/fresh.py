@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from .... import __version__
 from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
-from ....geometry.triangles import normals
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...deforming import KEY
-from ...materials.gltf_colored import with_rig_colors
+from ...materials.corners import vertex_normals
+from ...materials.gltf_colored import with_rig_looks
 from ..builder import GltfBuilder
 from ..container import Document, json_bytes, pack_glb, with_whole_names
 from ..influences import pack_influences, store_influences
@@ -29,16 +29,15 @@ MAX_SHIFT = 1e-3
 def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     """Return the files of a rig: mesh, normals, skin, joints as nodes, clips, attachments.
 
-    The base colours of the rig's file are taken along; see `materials.read_materials`.
+    The rig's file gives the base colours, and normals and texture coordinates of corners; see
+    `materials.transfer`.
 
     `check_fits` says whether the rig can become one.
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     document, data = _document(rig)
-    colored = with_rig_colors(document, data, rig)
-    if colored is not None:
-        data = colored.finish()
+    data = with_rig_looks(document, data, rig).finish()
     if path.suffix.lower() != ".gltf":
         return {path: pack_glb(json_bytes(document), data, [])}
     buffer = buffer_file(path, Document(path, document, [data]))
@@ -106,7 +105,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
 def _attributes(builder: GltfBuilder, mesh: TriangleMesh) -> dict[str, int]:
     return {
         "POSITION": builder.floats(mesh.vertices, bounds=True),
-        "NORMAL": builder.floats(vertex_normals(mesh)),
+        "NORMAL": builder.floats(vertex_normals(mesh.vertices, mesh.faces)),
     }
 
 
@@ -117,21 +116,6 @@ def _add_clip(builder: GltfBuilder, rig: Rig, clip: Clip) -> None:
         for j in range(values.shape[1]):
             builder.add_track(animation, j, path, times, values[:, j])
     builder.add("animations", animation)
-
-
-def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
-    """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
-    area = normals(mesh.vertices[mesh.faces])
-    _, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
-    same = same.reshape(-1)
-    summed = np.zeros((same.max() + 1, 3))
-    for k in range(3):
-        np.add.at(summed, same[mesh.faces[:, k]], area)
-    summed /= np.abs(summed).max() or 1.0
-    length = np.linalg.norm(summed, axis=1, keepdims=True)
-    # Any direction does for a vertex without a face; glTF only asks for unit length.
-    unit = np.where(length > 1e-12, summed / np.maximum(length, 1e-12), [0.0, 1.0, 0.0])
-    return unit[same].astype(np.float32)
 
 
 def joint_nodes(skeleton: Skeleton, first: int) -> list[dict[str, Any]]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....errors import MeshError, SkeletonError, WeightsError
 from ....rig import Rig
-from ...materials.gltf_colored import with_surface_colors
+from ...materials.gltf_colored import with_surface_looks
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
 from ..container import ENDINGS, Document, json_bytes, pack_glb
@@ -50,7 +50,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     for one in changed:
         _store(buffer, document, rig, one)
     store_faces(buffer, faces)
-    buffer = with_surface_colors(buffer, source.document.surfaces)
+    buffer = with_surface_looks(buffer, source.document.surfaces)
     carried = carry_images(buffer, source.document, path)
     return {**carried, **packed(buffer, source.document, path, carried)}
 

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.gltf.write.fresh import vertex_normals
+from cutcell.io.materials.corners import vertex_normals
 from cutcell.pose import swing
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES
 from tests.gltf_validator.validator import errors, reports
@@ -77,12 +77,12 @@ def test_many_joints_roots_and_influences(tmp_path):
 
 def test_vertices_without_a_face_have_a_normal_too():
     mesh = cutcell.TriangleMesh(np.concatenate([COLUMN, [[5, 5, 5]]]), FACES)
-    assert_allclose(np.linalg.norm(vertex_normals(mesh), axis=1), 1, atol=1e-6)
+    assert_allclose(np.linalg.norm(vertex_normals(mesh.vertices, mesh.faces), axis=1), 1, atol=1e-6)
 
 
 def test_normals_point_out_and_do_not_see_seams():
     mesh = cutcell.TriangleMesh(COLUMN[FACES].reshape(-1, 3), np.arange(FACES.size).reshape(-1, 3))
-    normals = vertex_normals(mesh)
+    normals = vertex_normals(mesh.vertices, mesh.faces)
     outward = mesh.vertices - [0.5, 1, 0.5]
     assert ((normals * outward).sum(axis=1) > 0).all()
     _, same = np.unique(mesh.vertices, axis=0, return_inverse=True)

@@ -1,0 +1,145 @@
+"""Normals and texture coordinates of the corners of a mesh, for new GLB files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.triangles import normals as face_normals
+from .surfaces import Surface, stored_corners
+
+DECIMALS = 6
+"""Of components of normals, so that rounding errors of a file split no vertices."""
+
+
+class Corners(NamedTuple):
+    """The corners of a mesh.
+
+    Parameters
+    ----------
+    normals : array, shape (m, 3, 3), float32, optional
+        Of length one.
+    places : array, shape (m, 3, 2), float32, optional
+        Texture coordinates from the upper left corner of an image.
+    """
+
+    normals: NDArray[np.float32] | None = None
+    places: NDArray[np.float32] | None = None
+
+
+class Piece(NamedTuple):
+    """The corners of some faces of a mesh as a file stores them.
+
+    Parameters
+    ----------
+    rows : slice
+        The faces.
+    corners : Corners
+        In the space of the file's mesh, normals of any length.
+    turned : array, shape (k,), bool
+        Which faces were turned round since the file was read.
+    matrix : array, shape (4, 4)
+        From the space of the file's mesh.
+    """
+
+    rows: slice
+    corners: Corners
+    turned: NDArray[np.bool_]
+    matrix: NDArray[np.float64]
+
+
+def surface_piece(
+    surface: Surface,
+    faces: NDArray[np.integer],
+    rows: slice,
+    matrix: NDArray[np.float64] | None = None,
+) -> Piece | None:
+    """Return what a surface stores of some faces; None if these are not its own.
+
+    Shapes: faces (k, 3), by the vertices of the surface; matrix (4, 4).
+    """
+    where = stored_corners(surface.faces, faces)
+    if where is None:
+        return None
+    matrix = np.eye(4) if matrix is None else matrix
+    stored = [
+        None if values is None else values.reshape(-1, values.shape[2])[where]
+        for values in (surface.normals, surface.places)
+    ]
+    turned = (where[:, 1] - where[:, 0]) % 3 == 2
+    # Faces of a mirrored mesh are turned on loading, and still face the same side.
+    return Piece(rows, Corners(*stored), turned ^ (np.linalg.det(matrix[:3, :3]) < 0), matrix)
+
+
+def join_corners(
+    vertices: NDArray[np.floating], faces: NDArray[np.integer], pieces: Iterable[Piece]
+) -> Corners:
+    """Return the corners of a mesh of pieces.
+
+    Where a file has no normal, or a normal without a direction, it is that of the smooth surface.
+    """
+    pieces = list(pieces)
+    normals = places = None
+    if any(piece.corners.places is not None for piece in pieces):
+        places = np.zeros((len(faces), 3, 2), np.float32)
+        for rows, corners, _, _ in pieces:
+            if corners.places is not None:
+                places[rows] = np.nan_to_num(corners.places, posinf=0, neginf=0)
+    if any(piece.corners.normals is not None for piece in pieces):
+        stored = np.zeros((len(faces), 3, 3))
+        for rows, corners, turned, matrix in pieces:
+            if corners.normals is not None:
+                facing = face_normals(vertices[faces[rows]])
+                moved = _moved(corners.normals, matrix)
+                against = np.einsum("ikc,ic->ik", moved, facing) < 0
+                stored[rows] = np.where((against & turned[:, None])[..., None], -moved, moved)
+        normals = _complete(stored, vertices, faces)
+    return Corners(normals, places)
+
+
+def _moved(normals: NDArray, matrix: NDArray) -> NDArray:
+    """Return unit normals in another space, zero for none; (k, 3, 3) and (4, 4) to (k, 3, 3)."""
+    unit = _unit(normals.astype(float))
+    rows = matrix[:3, :3] / max(np.abs(matrix[:3, :3]).max(), 1e-300)
+    if np.array_equal(rows, np.eye(3)):
+        return unit
+    # The inverse transpose but for a factor: the cofactors, which a singular matrix has, too.
+    cofactors = np.cross(rows[[1, 2, 0]], rows[[2, 0, 1]])
+    return _unit(unit @ cofactors.T * (-1 if np.linalg.det(rows) < 0 else 1))
+
+
+def _unit(vectors: NDArray) -> NDArray:
+    """Return vectors of length one, zero for those without a direction; (..., 3)."""
+    finite = np.where(np.isfinite(vectors).all(axis=-1, keepdims=True), vectors, 0)
+    largest = np.abs(finite).max(axis=-1, keepdims=True)
+    scaled = finite / np.where(largest > 0, largest, 1)
+    length = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    return scaled / np.where(length > 0, length, 1)
+
+
+def _complete(normals: NDArray, vertices: NDArray, faces: NDArray) -> NDArray[np.float32]:
+    """Return normals as they are stored; (m, 3, 3), zero for none."""
+    missing = ~normals.any(axis=2)
+    if missing.any():
+        normals = np.where(missing[..., None], vertex_normals(vertices, faces)[faces], normals)
+    return np.asarray(np.round(normals, DECIMALS) + 0.0, np.float32)  # -0 is 0
+
+
+def vertex_normals(
+    vertices: NDArray[np.floating], faces: NDArray[np.integer]
+) -> NDArray[np.float32]:
+    """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
+    area = face_normals(vertices[faces].astype(float))
+    _, same = np.unique(vertices, axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    summed = np.zeros((same.max() + 1, 3))
+    for k in range(3):
+        np.add.at(summed, same[faces[:, k]], area)
+    summed /= np.abs(summed).max() or 1.0
+    length = np.linalg.norm(summed, axis=1, keepdims=True)
+    # Any direction does for a vertex without a face; glTF only asks for unit length.
+    unit = np.where(length > 1e-12, summed / np.maximum(length, 1e-12), [0.0, 1.0, 0.0])
+    return unit[same].astype(np.float32)
