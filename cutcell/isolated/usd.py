@@ -192,7 +192,7 @@ def cut(mesh, points):
     if len(count) and (count.min() < 0 or count.sum() > len(vertices)):
         raise RuntimeError(f"mesh {name} lacks corners of its faces")
     if len(vertices) and (vertices.min() < 0 or vertices.max() >= len(points)):
-        raise RuntimeError(f"mesh {name}: a face uses a vertex out of its {len(points)}")
+        raise RuntimeError(f'mesh "{name}": a face uses a vertex out of its {len(points)}')
     corners, polygons = cut_polygons(points, vertices, count)
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
         corners = corners[:, ::-1]

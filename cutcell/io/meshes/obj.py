@@ -77,7 +77,7 @@ def parse_obj(text: str) -> ObjMesh:
         line = np.repeat(read.lines, read.sizes)[outside[0]]
         raise MeshError(
             f"line {line}: vertex {at[outside[0], 0] + 1} is out of range; "
-            f"the file has {len(vertices)}"
+            f"the file has only {len(vertices)}"
         )
     triangles, polygons = cut_polygons(vertices, at[:, 0], np.array(read.sizes, int))
     mesh = TriangleMesh(vertices, at[:, 0][triangles])
