@@ -185,9 +185,7 @@ def _numbered(read: _Lines) -> NDArray[np.int64]:
     bad = np.flatnonzero(at[:, 0] < 0)
     if len(bad):
         line = np.repeat(read.lines, read.sizes)[bad[0]]
-        raise FileError(
-            f"line {line}: vertex {stored[bad[0], 0]} is out of range; they start at 1"
-        )
+        raise FileError(f"line {line}: vertex {stored[bad[0], 0]} is out of range; they start at 1")
     return at
 
 
