@@ -45,7 +45,7 @@ def cut_polygons(
 
 
 def _cut(outlines: NDArray, polygons: NDArray) -> NDArray[np.intp]:
-    """Return the triangles of polygons of k corners: shapes (p, k, 3) and (p,), to (p, k - 2, 3)."""
+    """Return triangles of polygons of k corners, (p, k, 3) and (p,) to (p, k - 2, 3)."""
     count = outlines.shape[1]
     ahead = np.arange(count - 2)
     fan = np.stack([np.zeros_like(ahead), ahead + 1, ahead + 2], axis=1)

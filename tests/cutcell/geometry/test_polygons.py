@@ -16,7 +16,8 @@ def cut(points):
     count = len(points)
     triangles, owners = cut_polygons(points, np.arange(count), np.array([count]))
     assert len(triangles) == len(owners) == count - 2
-    sides = Counter((a, b) for t in triangles.tolist() for a, b in zip(t, t[1:] + t[:1]))
+    starts, ends = triangles.ravel().tolist(), np.roll(triangles, -1, axis=1).ravel().tolist()
+    sides = Counter(zip(starts, ends, strict=True))
     inner = {(a, b) for a, b in sides if sides[b, a]}
     assert set(sides) - inner == {(k, (k + 1) % count) for k in range(count)}
     assert set(sides.values()) == {1}
@@ -45,7 +46,8 @@ SHAPES = {
     "C": outline((0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (3, 2), (3, 3), (0, 3)),
     "on a line": outline((0, 0), (1, 0), (2, 0), (2, 2), (1, 2), (0, 2), (0, 1)),
     "double": outline((0, 0), (0, 0), (2, 0), (2, 0), (1, 0.5), (0, 2)),
-    "keyhole": outline((0, 0), (4, 0), (4, 4), (0, 4), (0, 0), (1, 1), (1, 3), (3, 3), (3, 1), (1, 1)),
+    "keyhole": outline((0, 0), (4, 0), (4, 4), (0, 4), (0, 0),
+                       (1, 1), (1, 3), (3, 3), (3, 1), (1, 1)),
     "thin": outline((0, 0), (1, 0), (1, 1e-4), (1e-4, 1e-4), (1e-4, 1), (0, 1)),
 }  # fmt: skip
 
@@ -110,6 +112,7 @@ def test_polygons_keep_their_order_and_those_without_area_are_left_out():
 
 def test_a_comb_with_too_many_corners_is_refused():
     teeth = np.arange(MAX_CORNERS // 2 + 1)
-    points = outline(*zip(teeth, 1 + teeth % 2, strict=True), *zip(teeth[::-1], -(teeth % 2), strict=True))  # fmt: skip
+    upper = zip(teeth, 1 + teeth % 2, strict=True)
+    points = outline(*upper, *zip(teeth[::-1], -(teeth % 2), strict=True))
     with pytest.raises(MeshError, match="polygon 0 has"):
         cut_polygons(points, np.arange(len(points)), np.array([len(points)]))

@@ -125,7 +125,8 @@ class TestFbx:
         assert_allclose(again.weights[order], rig.weights, atol=1e-6)
 
     @pytest.mark.parametrize(("how", "values"), [
-        ("ByVertice", SMOOTH), ("ByPolygon", HARD[:, 0]), ("ByPolygonVertex", 7 * HARD)])  # fmt: skip
+        ("ByVertice", SMOOTH), ("ByPolygon", HARD[:, 0]), ("ByPolygonVertex", 7 * HARD),
+    ])  # fmt: skip
     def test_of_other_mappings_and_lengths(self, tmp_path, how, values):
         rig = self.load(tmp_path, self.layered(values, how))
         (corners,) = saved(tmp_path, rig).values()
@@ -238,7 +239,7 @@ class TestUsd:
 
 
 def put(mesh, name, kind, how, values, is_indexed):
-    """Author a primvar."""
+    """Write a primvar."""
     primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, how)
     rows = flat(values)
     if is_indexed:
