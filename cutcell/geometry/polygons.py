@@ -109,7 +109,7 @@ def _clip_ears(outline: NDArray) -> NDArray[np.intp]:
     """
     ring = np.arange(len(outline))
     shape = _sines(outline[np.stack([np.roll(ring, 1), ring, np.roll(ring, -1)], axis=1)])
-    ears = np.array([_is_ear(outline, shape, k) for k in ring])
+    ears = np.array([_is_ear(outline, shape, k) for k in ring.tolist()])
     triangles = []
     while len(ring) > 3:
         if not ears.any():

@@ -122,7 +122,7 @@ def _unit(vectors: NDArray) -> NDArray:
 
 def _complete(normals: NDArray, vertices: NDArray, faces: NDArray) -> NDArray[np.float32]:
     """Return normals as they are stored; (m, 3, 3), zero for none."""
-    missing = ~normals.any(axis=2)
+    missing = (normals == 0).all(axis=2)
     if missing.any():
         normals = np.where(missing[..., None], vertex_normals(vertices, faces)[faces], normals)
     return np.asarray(np.round(normals, DECIMALS) + 0.0, np.float32)  # -0 is 0
