@@ -6,6 +6,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .color_maps import STOPS
+
 Color = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""
 
@@ -36,14 +38,19 @@ MARK = _rgb(232, 30, 99)
 SOURCE = _rgb(146, 72, 190)
 
 # Enough of a difference for colour-blind people, too: of all saturated colours of
-# middle lightness each was chosen farthest from those before it, to every one of `EYES`.
+# middle lightness each was chosen farthest from those before it, to every one of `EYES`;
+# the last four are darker.
 JOINT_COLORS = (
     (235, 167, 95), (62, 137, 247), (93, 232, 245), (225, 64, 116), (180, 143, 191),
     (177, 225, 161), (194, 110, 18), (102, 204, 186), (240, 208, 60), (173, 99, 196),
-    (232, 122, 105), (173, 176, 246),
+    (232, 122, 105), (173, 176, 246), (83, 43, 199), (95, 87, 0), (146, 0, 128), (0, 106, 75),
 )  # fmt: skip
-EVENNESS = 0.012
-"""How much of a difference in OKLab it is worth to use all colours equally often."""
+ALIKE = 0.015
+"""Difference of two colours over which the penalty for giving them to neighbours falls to 1/e."""
+ALL_EYES = 0.6
+"""Differences to all cones count by this factor, so that neighbours differ clearly to most."""
+SWEEPS = 30
+"""Over the joints, at most, until no joint changes its colour; a few are enough."""
 
 # How linear red, green and blue are seen by trichromats and by those who lack the long, middle
 # or short cones (Machado, Oliveira & Fernandes 2009).
@@ -96,53 +103,6 @@ DARK = Theme(
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
-# Control points of the colour maps, mixed in OKLab, so that equal steps look equal.
-_MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
-    # from the body's own grey to glowing orange: what a bone does not hold stays quiet
-    "weight": (
-        (201, 206, 214),
-        (236, 197, 142),
-        (247, 160, 72),
-        (240, 105, 32),
-        (192, 46, 30),
-        (128, 14, 38),
-    ),
-    # from the body's own grey to dark violet: where nothing is wrong nothing is said
-    "error": (
-        (201, 206, 214),
-        (247, 217, 126),
-        (246, 148, 66),
-        (218, 66, 78),
-        (142, 26, 108),
-        (64, 12, 78),
-    ),
-    # less is blue, more is red, the same is the body's own grey
-    "difference": (
-        (24, 78, 158),
-        (92, 158, 206),
-        (201, 206, 214),
-        (238, 136, 96),
-        (172, 22, 44),
-    ),
-    # near is light and warm, far is deep blue
-    "distance": (
-        (255, 245, 214),
-        (250, 205, 128),
-        (143, 198, 140),
-        (45, 158, 158),
-        (38, 104, 160),
-        (52, 54, 128),
-        (38, 22, 72),
-    ),
-    # few influences are calm, many glow
-    "count": ((214, 224, 236), (150, 190, 214), (86, 148, 178), (132, 92, 160), (96, 34, 92)),
-    # from the surface's green to the deepest orange
-    "depth": ((176, 214, 108), (235, 200, 90), (255, 140, 40), (214, 66, 14), (120, 24, 20)),
-    # winding numbers: outside is grey, inside orange
-    "winding": ((150, 158, 172), (176, 172, 168), (226, 158, 110), (255, 108, 12)),
-    # the same on the face of a cut, on which orange edges are to be seen
-    "inside": ((176, 182, 194), (214, 206, 226), (152, 126, 190), (92, 62, 140)),
-}
 TEXELS = 512
 UNREACHED_TEXELS = 8
 """The last texels of the map "reached", which is else like "distance"."""
@@ -164,7 +124,7 @@ def colormap(name: str) -> NDArray[np.uint8]:
     array, shape (512, 3), uint8
         The colour of values from the lower to the upper limit.
     """
-    stops = _srgb_to_oklab(np.array(_MAPS["distance" if name == "reached" else name]) / 255)
+    stops = _srgb_to_oklab(np.array(STOPS["distance" if name == "reached" else name]) / 255)
     at = np.linspace(0, len(stops) - 1, TEXELS)
     mixed = np.stack([np.interp(at, np.arange(len(stops)), c) for c in stops.T], axis=1)
     table = np.clip(_oklab_to_srgb(mixed), 0, 1)
@@ -178,48 +138,80 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
 
 def joint_colors(
-    parents: ArrayLike, touching: ArrayLike = (), idle: ArrayLike = ()
+    parents: ArrayLike,
+    touching: ArrayLike = (),
+    nearby: ArrayLike = (),
+    sizes: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
     """Return one colour a joint, far from its neighbours' to every kind of eye.
 
     Parameters
     ----------
     parents : array_like, shape (j,)
-    touching : array_like, shape (k, 2), optional
-        Pairs of joints whose skin touches.
-    idle : array_like, shape (m,), optional
-        Joints without skin: they take colours last.
+    touching, nearby : array_like, shape (k, 2), optional
+        Pairs of joints whose skin touches, and of joints whose skin is near in space.
+    sizes : array_like, shape (j,), optional
+        How much skin each joint has. Joints with much of it differ from each other first; joints
+        without any take what is left.
 
     Returns
     -------
     array, shape (j, 3), float64
-        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. No colour comes twice while
-        others are left. Parents, grandparents, siblings of a joint and joints whose skin touches
-        its own have others, as long as there are enough.
+        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`.
     """
-    above, last = np.asarray(parents, int), np.asarray(idle, int)
-    pairs = np.asarray(touching, int).reshape(-1, 2)
-    differences = _differences()
-    used = np.zeros(len(differences), int)
-    chosen = np.full(len(above), -1)
-    for joint in [*np.setdiff1d(np.arange(len(above)), last), *last]:
-        parent = above[joint]
-        skin = chosen[np.r_[pairs[pairs[:, 0] == joint, 1], pairs[pairs[:, 1] == joint, 0]]]
-        kin = chosen[(above == parent) | (above == joint)][-(len(differences) - 3) :]
-        old = chosen[[parent, above[parent]]] if parent >= 0 else chosen[:0]
-        near = np.concatenate([skin, kin, old])
-        score = differences[:, near[near >= 0]].min(axis=1, initial=1.0) - EVENNESS * used
-        score[skin[skin >= 0]] -= 1
-        score[used > 0] -= 2 if (used == 0).any() else 0
-        chosen[joint] = int(np.argmax(score))
-        used[chosen[joint]] += 1
+    above = np.asarray(parents, int)
+    size = np.ones(len(above)) if sizes is None else np.asarray(sizes, float)
+    conflict = _conflicts(above, _pairs(touching), _pairs(nearby), size)
+    penalty = np.exp(-_differences() / ALIKE)
+    chosen, taken = np.full(len(above), -1), np.zeros((len(above), len(penalty)))
+    order = np.argsort(-conflict.sum(axis=1), kind="stable")
+    for _ in range(SWEEPS):
+        before = chosen.copy()
+        for joint in order:
+            chosen[joint] = int(np.argmin(conflict[joint] @ taken @ penalty))
+            taken[joint] = np.arange(len(penalty)) == chosen[joint]
+        if np.array_equal(before, chosen):
+            break
     return np.array(JOINT_COLORS)[chosen] / 255
+
+
+def _pairs(pairs: ArrayLike) -> NDArray[np.intp]:
+    return np.asarray(pairs, int).reshape(-1, 2)
+
+
+def _conflicts(
+    above: NDArray, touching: NDArray, nearby: NDArray, size: NDArray
+) -> NDArray[np.float64]:
+    """Return how much each two joints should differ, (j, j), from parents, pairs and sizes."""
+    large = np.sqrt(size / size.max(initial=1e-300))
+    conflict = 1e-3 + 2e-2 * np.outer(large, large)
+    child = np.flatnonzero(above >= 0)
+    second = child[above[above[child]] >= 0]
+    is_sibling = (above[:, None] == above) & (above >= 0)
+    conflict[is_sibling] = np.maximum(conflict[is_sibling], 0.1)
+    groups = [
+        (np.stack([second, above[above[second]]], axis=1), 0.1),
+        (nearby, 0.2),
+        (np.stack([child, above[child]], axis=1), 1.0),
+    ]
+    for pairs, much in groups:
+        for a, b in (pairs.T, pairs.T[::-1]):
+            conflict[a, b] = np.maximum(conflict[a, b], much)
+    conflict[size == 0] *= 0.05
+    conflict[:, size == 0] *= 0.05
+    for a, b in (touching.T, touching.T[::-1]):
+        conflict[a, b] = 1
+    np.fill_diagonal(conflict, 0)
+    return conflict
 
 
 @cache
 def _differences() -> NDArray[np.float64]:
-    """Return the distance of colours in OKLab for the least sensitive colour vision."""
-    return differences(np.array(JOINT_COLORS) / 255)
+    """Return how much joints' colours differ to the eye that sees it least, (c, c)."""
+    colors = np.array(JOINT_COLORS) / 255
+    labs = _srgb_to_oklab(colors)
+    to_most = np.linalg.norm(labs[:, None] - labs, axis=2)
+    return np.minimum(ALL_EYES * to_most, differences(colors))
 
 
 def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:

@@ -1,10 +1,15 @@
 """Colours: the paper's three, maps that rise evenly, joints that can be told apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import cutcell
+from cutcell_assets import DEMOS, demo_path
 from cutcell_viewers import palette
 from cutcell_viewers.joint_colors import colors_of
+from tests.conftest import SHARED_RIGS
 from tests.viewers.arm import arm_rig
 
 
@@ -61,9 +66,11 @@ def test_the_three_kinds_of_edges_are_told_apart_by_every_eye(theme):
 
 def test_colours_of_joints_repeat_only_when_all_are_used():
     count = len(palette.JOINT_COLORS)
-    # Sixteen joints in a star, of which four have no skin.
-    parents, idle = np.array([-1, *[0] * 15]), [1, 2, 3, 4]
-    colors = palette.joint_colors(parents, idle=idle)
+    # Joints in a star, of which four have no skin.
+    parents, idle = np.array([-1, *[0] * (count + 3)]), [1, 2, 3, 4]
+    sizes = np.ones(count + 4)
+    sizes[idle] = 0
+    colors = palette.joint_colors(parents, sizes=sizes)
     assert len(np.unique(np.delete(colors, idle, axis=0), axis=0)) == count
 
 
@@ -73,6 +80,46 @@ def test_parts_whose_skin_touches_have_other_colours():
     touching = np.array([(a, b) for a in range(80) for b in (a + 7, a + 20, a + 33) if b < 80])
     colors = palette.joint_colors(parents, touching)
     assert (np.abs(colors[touching[:, 0]] - colors[touching[:, 1]]).max(axis=1) > 0).all()
+
+
+CHARACTERS = [*(demo_path(demo.id) for demo in DEMOS), *sorted(SHARED_RIGS.glob("*.glb"))]
+
+
+@pytest.mark.parametrize("path", CHARACTERS, ids=lambda path: path.stem)
+def test_neighbours_differ_clearly_on_characters(path):
+    rig = cutcell.load(path)
+    colors, parents = colors_of(rig), rig.skeleton.parents
+    strongest = rig.weights.argmax(axis=1)
+    corners = strongest[rig.mesh.faces]
+    touching = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    family = np.stack([np.flatnonzero(parents >= 0), parents[parents >= 0]], axis=1)
+    family = family[np.isin(family, strongest).all(axis=1)]
+    pairs = np.concatenate([touching, family])
+    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    labs = palette._srgb_to_oklab(colors)
+    assert np.linalg.norm(labs[pairs[:, 0]] - labs[pairs[:, 1]], axis=1).min() > 0.14
+    assert palette.differences(colors)[pairs[:, 0], pairs[:, 1]].min() > 0.08
+
+
+def test_large_parts_do_not_share_colours():
+    rig = cutcell.load(demo_path("biped"))
+    largest = np.argsort(-np.bincount(rig.weights.argmax(axis=1)))[:12]
+    assert len(np.unique(colors_of(rig)[largest], axis=0)) >= 11
+
+
+def test_parts_that_are_near_in_space_differ_without_touching():
+    nearby = np.array([(a, b) for a in range(60) for b in (a + 16, a + 32) if b < 60])
+    colors = palette.joint_colors(np.full(60, -1), nearby=nearby)
+    labs = palette._srgb_to_oklab(colors)
+    assert np.linalg.norm(labs[nearby[:, 0]] - labs[nearby[:, 1]], axis=1).min() > 0.14
+
+
+def test_a_rig_without_weights_has_neighbours_too():
+    rig = cutcell.load(demo_path("biped"))
+    colors = colors_of(replace(rig, weights=None))
+    names = {name: colors[joint] for joint, name in enumerate(rig.skeleton.names)}
+    assert (names["hips"] != names["thigh.L"]).any()
+    assert (names["hand.L"] != names["thigh.L"]).any()
 
 
 def test_a_rig_takes_its_touching_parts_from_the_files_weights():
