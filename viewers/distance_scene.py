@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
+from cutcell.runtime.display import short_names
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
@@ -63,7 +64,7 @@ def distance_colors(
     legend = distance_legend(rig, joint, limits)
     if unreached:
         legend = replace(legend, swatches=((UNREACHED, "no path leads there"),))
-    name = rig.skeleton.names[joint]
+    name = short_names(rig.skeleton.names)[joint]
     reading = Reading(f"from {name}: ", unit=longest_side(rig))
     return {**style, "reading": reading}, legend
 
@@ -95,7 +96,7 @@ def shown_distance(distance: ArrayLike, limits: tuple[float, float]) -> NDArray[
 
 def distance_legend(rig: Rig, joint: int, limits: tuple[float, float]) -> Legend:
     """Return the legend of one joint's distance field; limits are in longest sides."""
-    name = rig.skeleton.names[joint]
+    name = short_names(rig.skeleton.names)[joint]
     high = f"{file_units(limits[1], rig)} in the file's units"
     return Legend(f"Distance from {name}", "distance", "0", high)
 

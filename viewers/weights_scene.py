@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
+from cutcell.runtime.display import short_names
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
@@ -65,7 +66,7 @@ def weight_colors(
 ) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     if joint is not None:
-        name = rig.skeleton.names[joint]
+        name = short_names(rig.skeleton.names)[joint]
         legend = Legend(f"Weight of {name}", "weight", "0", "1")
         scalars = np.ascontiguousarray(np.asarray(weights)[:, joint], np.float32)
         return {"scalars": scalars, "colormap": "weight", "reading": Reading(f"{name} ")}, legend
@@ -137,7 +138,7 @@ def bone_difference_colors(
     look, legend
         As `weight_colors`.
     """
-    name = rig.skeleton.names[joint]
+    name = short_names(rig.skeleton.names)[joint]
     more = np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]
     title = f"Weight of {name}: {names[0]} minus {names[1]}"
     legend = Legend(title, "difference", "\N{MINUS SIGN}1", "+1")

@@ -6,7 +6,6 @@ import cutcell
 from cutcell.runtime.progress import Progress
 
 from ..scenes.explain import explanation_of
-from ..state.method import effective, method_of
 from .session import Session
 
 
@@ -24,7 +23,8 @@ def explain(session: Session) -> None:
         return
     if explanation_of(state) is not None:
         return
-    method, corrections = effective(method_of(state)), state.corrections
+    bound = session.binder.bound
+    corrections = state.corrections if bound is None else bound.corrections
 
     def work(progress: Progress) -> Any:
         distances = binding.distances
@@ -34,7 +34,7 @@ def explain(session: Session) -> None:
             distances=distances,
             corrections=corrections,
             progress=progress,
-            **method,
+            method=binding.method,
         )
 
     def done(result: Any) -> None:

@@ -1,6 +1,7 @@
 // The card of one vertex: its weights as bars, its nearest bones, where it belongs.
 
 import {stylesheet} from "./styles.js"
+import {lengthText, percentText, weightText} from "./text.js"
 
 const styled = await stylesheet("inspector.css")
 
@@ -18,16 +19,14 @@ function bar(color, part) {
   return made
 }
 
-function row(model, {joint, name}, bars, value, spoken) {
+function row(model, {joint, name, short}, bars, value, spoken) {
   const made = element("button", "row")
   made.type = "button"
   made.title = `Choose ${name}`
   made.setAttribute("aria-label", spoken)
   const track = element("span", "bars")
   track.append(...bars)
-  // A common prefix ("mixamorig:") distinguishes no names, and space is short.
-  const short = name.replace(/^.*[:|](?=.)/, "")
-  made.append(element("span", "name", short), track, element("span", "value", value))
+  made.append(element("span", "name", short ?? name), track, element("span", "value", value))
   made.addEventListener("click", () => model.send_msg({type: "bone", joint}))
   return made
 }
@@ -53,7 +52,7 @@ function nodeCard(model, {node, kind, position, winding, degree, neighbours, tri
   root.append(element("div", "quiet", `${FORMS[kind]} ${kind} node`))
   const list = element("dl")
   const tell = (name, value) => list.append(element("dt", "", name), element("dd", "", value))
-  tell("position", position.map((x) => Number(x.toPrecision(4))).join(", "))
+  tell("position", position.map(lengthText).join(", "))
   tell("winding number", winding.toFixed(3))
   if (triangle) { tell("cut from", `face ${triangle[0]}: ${triangle.slice(1).join(", ")}`) }
   if (vertices.length) { tell(vertices.length > 1 ? "vertices" : "vertex", vertices.join(", ")) }
@@ -63,7 +62,7 @@ function nodeCard(model, {node, kind, position, winding, degree, neighbours, tri
   for (const other of neighbours) {
     const button = element("button", "row step")
     button.type = "button"
-    const length = String(Number(other.length.toPrecision(3)))
+    const length = lengthText(other.length)
     button.setAttribute("aria-label", `Go to ${other.kind} node ${other.node}, ${length} away`)
     button.append(element("span", "name", `${FORMS[other.kind]} ${other.node}`), element("span", "", other.kind), element("span", "value", length))
     button.addEventListener("click", () => model.send_msg({type: "node", node: other.node}))
@@ -72,7 +71,6 @@ function nodeCard(model, {node, kind, position, winding, degree, neighbours, tri
   return root
 }
 
-const LENGTH = (x) => x === null ? "farther" : String(Number(x.toPrecision(3)))
 const PIECES = {
   "mesh edge": "along the mesh", "interior edge": "inside", "surface edge": "through the skin",
   "line of sight": "straight inside", outside: "outside",
@@ -85,7 +83,7 @@ function pathBar(path) {
   for (const [kind, length] of path) {
     const piece = element("span", `piece ${kind.replaceAll(" ", "-")}`)
     piece.style.flexGrow = 100 * length / whole
-    piece.title = `${PIECES[kind]}: ${LENGTH(length)}`
+    piece.title = `${PIECES[kind]}: ${percentText(length / whole)}`
     bar.append(piece)
   }
   return bar
@@ -106,11 +104,24 @@ function waterfall({color, steps, file}) {
       lost.className = "bar lost"
       bars.append(lost)
     }
-    track.append(bars, element("span", "value", value.toFixed(2)))
+    track.append(bars, element("span", "value", weightText(value)))
     list.append(element("dt", "", name), track)
     before = value
   }
   return list
+}
+
+// A length is told once: the distance that the weights follow, else that of the path.
+function distanceText({path, distance, straight, factors, effective}) {
+  const air = straight === null ? "" : `, through the air ${lengthText(straight)}`
+  if (distance === null && path.length) {
+    const length = path.reduce((sum, [, piece]) => sum + piece, 0)
+    return `Path ${lengthText(length)}${air}: too far for a weight.`
+  }
+  if (distance === null) { return straight === null ? "It has no bone." : `No distance${air}.` }
+  const times = factors.map(([name, value]) => `×\u202f${value.toPrecision(2)} ${name}`)
+  const counts = times.length ? `; ${times.join(", ")}: effective ${lengthText(effective)}` : ""
+  return `Distance ${lengthText(distance)}${air}${counts}.`
 }
 
 function explained(bone, first) {
@@ -119,20 +130,19 @@ function explained(bone, first) {
   const summary = element("summary")
   const dot = element("span", "dot")
   dot.style.background = bone.color
-  summary.append(dot, element("span", "name", bone.name), element("span", "value", bone.steps.at(-1)[1].toFixed(2)))
+  summary.append(dot, element("span", "name", bone.short ?? bone.name), element("span", "value", weightText(bone.steps.at(-1)[1])))
+  summary.title = bone.name
   root.append(summary)
   if (bone.path.length) {
     const lengths = new Map()
     for (const [kind, length] of bone.path) { lengths.set(kind, (lengths.get(kind) || 0) + length) }
-    const parts = [...lengths].map(([kind, length]) => `${PIECES[kind]} ${LENGTH(length)}`)
+    const whole = bone.path.reduce((sum, [, length]) => sum + length, 0) || 1
+    const parts = [...lengths].map(([kind, length]) => `${percentText(length / whole)} ${PIECES[kind]}`)
     root.append(pathBar(bone.path), element("div", "quiet", parts.join(" · ")))
   } else {
-    root.append(element("div", "quiet", "No path leads there through the body."))
+    root.append(element("div", "quiet", "No path to this joint through the body."))
   }
-  const far = `Distance ${LENGTH(bone.distance)}, through the air ${LENGTH(bone.straight)}`
-  const factors = bone.factors.map(([name, value]) => `×\u202f${value.toPrecision(2)} ${name}`)
-  const counts = factors.length ? `; ${factors.join(", ")}: effective ${LENGTH(bone.effective)}` : ""
-  root.append(element("div", "quiet", `${far}${counts}.`), waterfall(bone))
+  root.append(element("div", "quiet", distanceText(bone)), waterfall(bone))
   return root
 }
 
@@ -142,7 +152,7 @@ function overruling(model, facts) {
   const heading = element("h3", "", "Override")
   heading.append(element("small", "", facts.overruled ? "set manually" : "scaled to sum to one"))
   form.append(heading)
-  const fields = facts.offered.map(({joint, name, color, weight}) => {
+  const fields = facts.offered.map(({joint, name, short, color, weight}) => {
     const label = element("label")
     const dot = element("span", "dot")
     dot.style.background = color
@@ -150,7 +160,8 @@ function overruling(model, facts) {
     Object.assign(input, {type: "number", min: 0, max: 1, step: 0.05, required: true})
     input.defaultValue = String(Number(weight.toFixed(3)))
     input.setAttribute("aria-label", `Weight of ${name}`)
-    label.append(dot, element("span", "name", name), input)
+    label.title = name
+    label.append(dot, element("span", "name", short ?? name), input)
     form.append(label)
     return [joint, input]
   })
@@ -196,8 +207,9 @@ function explanation(model, facts) {
 function card(model, facts) {
   if (facts.node !== undefined) { return nodeCard(model, facts) }
   const root = empty(model, "Vertex", facts.vertex)
+  if (facts.method) { root.append(element("div", "quiet", `Method: ${facts.method}`)) }
   if (!facts.computed) {
-    root.append(element("div", "quiet", "Its weights come as soon as they are computed."))
+    root.append(element("div", "quiet", "No weights computed yet."))
     return root
   }
   const asks = facts.explain !== undefined  // a page without a server has no answers
@@ -219,22 +231,23 @@ function card(model, facts) {
   root.append(heading)
   for (const bone of facts.weights) {
     const bars = [bar(bone.color, bone.ours)]
-    let spoken = `${bone.name}: weight ${bone.ours.toFixed(2)}`
+    let spoken = `${bone.name}: weight ${weightText(bone.ours)}`
     if (facts.artist) {
       bars.push(bar(bone.color, bone.artist))
-      spoken += `, in the file ${bone.artist.toFixed(2)}`
+      spoken += `, in the file ${weightText(bone.artist)}`
     }
-    root.append(row(model, bone, bars, bone.ours.toFixed(2), spoken))
+    root.append(row(model, bone, bars, weightText(bone.ours), spoken))
   }
 
+  if (!facts.distances) { return root }  // of another method
   const distances = element("h3", "", "The nearest bones")
   distances.append(element("small", "", "distance, in the file's units"))
   root.append(distances)
   const most = Math.max(...facts.distances.map(({distance}) => distance), 1e-12)
   for (const bone of facts.distances) {
     const {name, distance, color} = bone
-    const spoken = `${name}: distance ${LENGTH(distance)}`
-    root.append(row(model, bone, [bar(color, distance / most)], LENGTH(distance), spoken))
+    const spoken = `${name}: distance ${lengthText(distance)}`
+    root.append(row(model, bone, [bar(color, distance / most)], lengthText(distance), spoken))
   }
 
   if (asks) { root.append(...explanation(model, facts)) }
@@ -242,7 +255,7 @@ function card(model, facts) {
   const state = element("div", "state")
   const dot = element("span", "dot")
   dot.style.background = facts.reached ? "#4c9a2a" : "#d9822b"
-  const reached = facts.reached ? "Reached through the body."
+  const reached = facts.reached ? "Reached through the body from at least one joint."
     : `It follows its nearest bones in a straight line: ${facts.reason}.`
   state.append(dot, element("span", "", reached))
   root.append(state)

@@ -49,7 +49,7 @@ export function render({model}) {
     made.setAttribute("aria-checked", row.carries)
     if (forest.hasChildren(i)) { made.setAttribute("aria-expanded", !forest.closed.has(row.joint)) }
     made.classList.toggle("idle", !row.carries)
-    made.style.paddingLeft = `${4 + 9 * Math.min(row.level, 9)}px`
+    made.style.paddingLeft = `${4 + 6 * Math.min(row.level, 8)}px`
     const twist = element("span", "twist", forest.hasChildren(i) ? "▾" : "", made)
     twist.addEventListener("click", (e) => { e.stopPropagation(); toggle(i) })
     const box = element("span", "box", row.carries ? "✓" : "", made)
@@ -59,8 +59,8 @@ export function render({model}) {
     const chip = element("span", row.control ? "chip control" : "chip", "", made)
     chip.style.setProperty("--own", row.color)
     const name = element("span", "name", "", made)
-    element("span", "start", row.name.slice(0, -TAIL), name)
-    element("span", "tail", row.name.slice(-TAIL), name)
+    element("span", "start", row.short.slice(0, -TAIL), name)
+    element("span", "tail", row.short.slice(-TAIL), name)
     name.title = row.why ? `${row.name}: ${row.why}` : row.name
     if (row.locked) {
       const lock = element("span", "lock", "", made)

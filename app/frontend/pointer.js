@@ -57,8 +57,9 @@ export class Pointer {
     const found = this.under(...this.place(e))
     if (!found) { return }
     const {joint, vertex} = found
+    const view = this.view.renderer.viewAt(...this.place(e))
     this.view.model.send_msg(
-      joint === undefined ? {type: "pick-vertex", vertex} : {type: "pick", joint},
+      joint === undefined ? {type: "pick-vertex", vertex, view} : {type: "pick", joint},
     )
   }
 
@@ -74,7 +75,8 @@ export class Pointer {
       const far = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity
       if (far < least) { [least, vertex] = [far, i / 3] }
     }
-    if (vertex !== undefined) { this.view.model.send_msg({type: "pick-vertex", vertex}) }
+    const view = renderer.viewAt(x, y)
+    if (vertex !== undefined) { this.view.model.send_msg({type: "pick-vertex", vertex, view}) }
   }
 
   hovered(e) {

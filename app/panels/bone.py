@@ -4,6 +4,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.runtime.display import short_names
+
 from ..commands.session import Session
 from .controls import offer, row, section, select_box, unique_names, when
 
@@ -22,7 +24,7 @@ def bone(session: Session) -> pmui.Column:
 
     def listed(*events: Any) -> None:
         names = () if state.rig is None else state.rig.skeleton.names
-        offer(select, unique_names(names), state.joint)
+        offer(select, unique_names(short_names(names)), state.joint)
 
     def chosen(event: Any) -> None:
         if event.new is not None:

@@ -33,7 +33,7 @@ FIELDS = {"Selected bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}
 COLUMNS = [
     ("L1", "Weight error against the original weights: 0 same, 2 nothing in common"),
-    ("cm²", "Mean squared deformation error, the longest side scaled to 1 m"),
+    ("mm", "Deformation error, root mean square, the longest side scaled to 1 m"),
     ("s", "Seconds"),
 ]
 WATCHED = ["methods", "compared", "comparing", "queued", "binding", "rig"]
@@ -71,7 +71,7 @@ def about(rig: Rig | None) -> str:
     """Return what the columns of errors tell, and against what."""
     if rig is not None and rig.weights is None:
         return "The file has no weights to compare with."
-    return "L1 (weights) and cm² (motion): the paper's errors against the original weights."
+    return "Errors against the original weights: L1 (weights) and mm (motion)."
 
 
 def _field(state: State) -> pmui.RadioButtonGroup:
@@ -123,7 +123,9 @@ def rows_of(state: State) -> list[dict[str, Any]]:
             {
                 "id": name,
                 "title": title_of(name),
-                "values": [_number(value, k) for k, value in enumerate(values)],
+                "values": [
+                    _number(_rms(value) if k == 1 else value, k) for k, value in enumerate(values)
+                ],
                 "best": [
                     value is not None and name != "artist" and value == best.get(measure)
                     for measure, value in zip(("l1", "deformation", ""), values, strict=True)
@@ -149,6 +151,11 @@ def _note(state: State, name: str, one: Any, chosen: bool) -> tuple[str, str]:
             return "Waiting for other visitors", "note"
         return "Computing", "running"
     return "", ""
+
+
+def _rms(deformation: float | None) -> float | None:
+    """Return a mean squared error in cm² as a length in mm."""
+    return None if deformation is None else 10 * deformation**0.5
 
 
 def _number(value: float | None, column: int) -> str:

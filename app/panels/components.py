@@ -5,7 +5,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from cutcell.editing.corrections import PartCorrection
-from cutcell.runtime.display import shown_name
+from cutcell.runtime.display import short_names, shown_name
 
 from ..commands import correct
 from ..commands.session import Session
@@ -68,7 +68,7 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         way.param.update(options={**offered, **(FROM_FILE if has_weights else {})}, value=how)
         glue.visible = now is not None and now.how == "glued"
         if now is not None and now.joint is not None:
-            offer(glue, unique_names(names), names.index(now.joint))
+            offer(glue, unique_names(short_names(names)), names.index(now.joint))
 
     def changed(event: Any) -> None:
         one = _now(parts, chosen(state, memo))

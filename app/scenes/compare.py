@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.baselines import METHODS
+from cutcell.runtime.display import short_names
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
 from cutcell_viewers.skin import skin_of_weights
@@ -116,7 +117,7 @@ def looks_of(
         styles = {
             name: _difference(table[:, joint] - base[:, joint]) for name, table in computed.items()
         }
-        title = f"Weight of {state.rig.skeleton.names[joint]}, difference"
+        title = f"Weight of {short_names(state.rig.skeleton.names)[joint]}, difference"
         return styles, Legend(title, "difference", "−1", "+1")
     if base is not None:
         styles = {

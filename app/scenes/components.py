@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from cutcell.editing.corrections import PartCorrection
+from cutcell.graph import MESH, CutCellGraph
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.description import Actor
 
 from ..state import State
-from .facts import components
 from .memo import Memo
 
 MOST = 300
@@ -124,3 +125,25 @@ def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.f
     member = coo_array((np.ones(len(which)), (which, np.arange(len(which)))), (count, len(which)))
     mean: NDArray[np.float64] = (member @ weights) / np.bincount(which, minlength=count)[:, None]
     return mean
+
+
+def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return each vertex's connected component, and the components and sizes.
+
+    Returns
+    -------
+    which : array, shape (n,)
+        The largest part is 0.
+    sizes : array, shape (c,)
+        In vertices of the file.
+    """
+    welded = graph.first_point
+    a, b = graph.edges[graph.edge_kind == MESH].T
+    links = coo_array((np.ones(len(a), bool), (a, b)), shape=(welded, welded))
+    label = connected_components(links, directed=False)[1][graph.vertex_node]
+    sizes = np.bincount(label)
+    order = np.argsort(-sizes, kind="stable")
+    rank = np.empty(len(order), int)
+    rank[order] = np.arange(len(order))
+    present = sizes[order] > 0
+    return rank[label], sizes[order][present]

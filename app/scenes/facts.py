@@ -4,18 +4,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cutcell.geodesics import FALLBACK_REASONS
-from cutcell.graph import MESH, CutCellGraph
 from cutcell.graph.winding import winding_number
-from cutcell.runtime.display import shown_name
+from cutcell.runtime.display import short_names, shown_name
 from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
 
 from ..state import State
+from ..state.compare import NOW
+from .compare import title_of, weights_of
+from .components import components
 from .explain import explanation_facts
 from .memo import Memo
 
@@ -37,52 +37,71 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         whether the file has weights; "explain", whether it is asked why, and "why", the
         answer for each joint, once it is there (see `explanation_facts`); "overruled", whether
         a person gave it its weights, and "offered", joints that it may be given weight of.
-        Lengths are in the file's units.
+        Lengths are in the file's units. Beside other methods "method" names the one that was
+        clicked; only the page's own has distances and an explanation.
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
         return None
-    facts: dict[str, Any] = {"vertex": int(vertex), "computed": binding is not None}
-    if binding is None:
+    method = _method_of(state)
+    weights = weights_of(state, method)
+    computed = binding is not None and weights is not None
+    facts: dict[str, Any] = {"vertex": int(vertex), "computed": computed}
+    if state.panel == "compare":
+        facts["method"] = title_of(method)
+    if not computed:
         return facts
     colors = memo("colors", (rig,), lambda: colors_of(rig))
+    shorts = memo("short names", (rig.skeleton,), lambda: short_names(rig.skeleton.names))
 
     def bone(joint: int, **values: Any) -> dict[str, Any]:
         color = to_hex(tuple(colors[joint]))
         return {
             "joint": int(joint),
             "name": shown_name(rig.skeleton.names[joint]),
+            "short": shorts[joint],
             "color": color,
             **values,
         }
 
-    artist = None if rig.weights is None else rig.weights[vertex]
-    computed = binding.weights[vertex]
-    either = computed if artist is None else np.maximum(computed, artist)
+    own = np.asarray(weights[vertex])
+    artist = None if rig.weights is None or method == "artist" else rig.weights[vertex]
+    either = own if artist is None else np.maximum(own, artist)
     listed = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
-    distance = binding.distances.at(slice(None), vertex) * binding.graph.lattice.size
-    near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
     which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
     component = int(which[vertex])
+    facts |= {
+        "artist": artist is not None,
+        "weights": [
+            bone(j, ours=float(own[j]), artist=0.0 if artist is None else float(artist[j]))
+            for j in listed
+        ],
+        "component": {"number": component + 1, "of": len(sizes), "vertices": int(sizes[component])},
+    }
+    if method != NOW:
+        return facts
+    distance = binding.distances.at(slice(None), vertex) * binding.graph.lattice.size
+    near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
     fallback = int(binding.distances.fallback[vertex])
     return {
         **facts,
-        "artist": artist is not None,
-        "weights": [
-            bone(j, ours=float(computed[j]), artist=0.0 if artist is None else float(artist[j]))
-            for j in listed
-        ],
         "distances": [bone(j, distance=float(distance[j])) for j in near if distance[j] < np.inf],
-        "component": {"number": component + 1, "of": len(sizes), "vertices": int(sizes[component])},
         "reached": fallback == 0,
         "reason": FALLBACK_REASONS[fallback],
         "explain": state.explain,
         "why": [bone(j, **details) for j, details in explanation_facts(state).items()],
         "overruled": vertex in state.corrections.vertices,
-        "offered": [bone(j, weight=float(computed[j])) for j in _offered(state, computed, distance)]
+        "offered": [bone(j, weight=float(own[j])) for j in _offered(state, own, distance)]
         if state.explain
         else [],
     }
+
+
+def _method_of(state: State) -> str:
+    """Return the method that the card shows: the one clicked beside others, else the page's."""
+    if state.panel != "compare":
+        return NOW
+    return state.clicked_method if state.clicked_method in state.methods else state.methods[0]
 
 
 def _offered(state: State, weights: NDArray, distance: NDArray) -> list[int]:
@@ -139,25 +158,3 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
 
 def _winding(state: State, position: NDArray[np.float64]) -> float:
     return float(winding_number(state.rig.mesh, position[None])[0])
-
-
-def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return each vertex's connected component, and the components and sizes.
-
-    Returns
-    -------
-    which : array, shape (n,)
-        The largest part is 0.
-    sizes : array, shape (c,)
-        In vertices of the file.
-    """
-    welded = graph.first_point
-    a, b = graph.edges[graph.edge_kind == MESH].T
-    links = coo_array((np.ones(len(a), bool), (a, b)), shape=(welded, welded))
-    label = connected_components(links, directed=False)[1][graph.vertex_node]
-    sizes = np.bincount(label)
-    order = np.argsort(-sizes, kind="stable")
-    rank = np.empty(len(order), int)
-    rank[order] = np.arange(len(order))
-    present = sizes[order] > 0
-    return rank[label], sizes[order][present]

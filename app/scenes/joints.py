@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cutcell.editing.corrections import JointCorrection
 from cutcell.metrics import vertex_shares
 from cutcell.rig.deform_joints import DeformJoints
-from cutcell.runtime.display import shown_name
+from cutcell.runtime.display import short_names, shown_name
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
 
@@ -47,15 +47,16 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     Returns
     -------
     list of dict
-        "joint", "name", "level" (0 for a root), "color", "control" (whether it moves bones, or
-        nothing, rather than skin), "why" it is one, "carries" (whether it may carry weight),
-        "changed" (whether that was corrected), "ours" and "file" (shares of the skin, or None),
+        "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
+        bones, or nothing, rather than skin), "why" it is one, "carries" (whether it may carry
+        weight), "changed" (whether that was corrected), "ours" and "file" (shares of the skin, or None),
         "locked", "gain" and "radius".
     """
     rig = state.rig
     skeleton = rig.skeleton
     colors = memo("colors", (rig,), lambda: colors_of(rig))
     computed, original = shares_of(state, memo)
+    shorts = memo("short names", (skeleton,), lambda: short_names(skeleton.names))
     rows = []
     for joint in in_order(skeleton):
         name = skeleton.names[joint]
@@ -66,6 +67,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
             {
                 "joint": joint,
                 "name": shown_name(name),
+                "short": shorts[joint],
                 "level": int(skeleton.depth[joint]),
                 "color": to_hex(tuple(colors[joint])),
                 "control": control,

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from cutcell.runtime.display import short_names
 from cutcell_viewers.description import Actor, Cut, Legend
 from cutcell_viewers.plane_section import PlaneSection
 from cutcell_viewers.section_scene import body_section, field_face, section_lines, winding_face
@@ -22,7 +23,7 @@ def field_section(
         return {}
     rig, graph, tau = state.rig, state.graph, state.winding_threshold
     section = _section(state, memo, cut)
-    text = f"from {rig.skeleton.names[state.joint]}: "
+    text = f"from {short_names(rig.skeleton.names)[state.joint]}: "
     face = memo(
         "field face",
         (section, tau, field, *limits),

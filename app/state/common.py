@@ -80,6 +80,6 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "exporting",
-                    "message",                    "own", "tier", "rendered"})  # fmt: skip
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "exporting", "message",
+                    "own", "tier", "rendered", "clicked_method"})  # fmt: skip
 """Choices that the scene does not depend on."""

@@ -36,4 +36,5 @@ class CompareChoices(param.Parameterized):
     compare_field: param.Selector[str] = param.Selector(
         default="bone", objects=["bone", "all", "error"]
     )
+    clicked_method = param.String("", doc="The method whose view was clicked last.")
     minus = param.String("", doc="The method that is taken away from all; empty for none.")

@@ -25,7 +25,16 @@ class Inspector(JSComponent):
         self._session = session
         self._follow()
         names = ["rig", "binding", "bare_graph", "panel", "vertex", "node", "tour"]
-        names += ["explain", "explanation", "corrections", "joint"]
+        names += [
+            "clicked_method",
+            "methods",
+            "compared",
+            "comparing",
+            "explain",
+            "explanation",
+            "corrections",
+            "joint",
+        ]
         session.state.param.watch(self._follow, names)
 
     def _follow(self, *events: Any) -> None:

@@ -5,7 +5,7 @@ FROM_BROWSER = {
     "camera": "position, focal_point, aspect, home.",
     "time": "Time of the motion.",
     "pick": "A joint is clicked.",
-    "pick-vertex": "A vertex is clicked, or none.",
+    "pick-vertex": "A vertex is clicked: vertex, and the view it is seen in.",
     "pick-node": "A node of the graph is clicked.",
     "turn": "A ring is dragged: joint, axis, degrees, begin.",
     "joint": "A joint is dragged: joint, position, done.",

@@ -10,8 +10,10 @@ import pytest
 import cutcell
 from cutcell.graph.winding import winding_number as cutcell_winding
 from cutcell.rig import TriangleMesh
+from cutcell_app.commands.compare import Compared
 from cutcell_app.files.graph_numbers import save_graph
 from cutcell_app.scenes import Memo
+from cutcell_app.scenes.compare import title_of
 from cutcell_app.scenes.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.state import State
 from tests.viewers.arm import arm_rig
@@ -125,3 +127,35 @@ def test_a_graph_leaves_as_numbers(binding, tmp_path):
     assert (len(nodes), len(edges)) == (len(graph.nodes) + 1, len(graph.edges) + 1)
     a, b = graph.edges[-1]
     assert edges[-1].startswith(f"{a},{b},surface,")
+
+
+def test_beside_other_methods_the_card_shows_the_clicked_ones_weights(rig, binding):
+    other = np.zeros_like(binding.weights)
+    other[:, 2] = 1
+    state = State(
+        rig=rig, binding=binding, vertex=7, panel="compare", methods=["now", "artist", "euclidean"]
+    )
+    state.compared = {"euclidean": Compared(rig, other)}
+    state.clicked_method = "euclidean"
+    found = vertex_facts(state, Memo())
+    assert found["method"] == title_of("euclidean")
+    assert {bone["joint"]: bone["ours"] for bone in found["weights"]}[2] == 1
+    assert not {"distances", "why", "reached"} & set(found), "these are of the page's own binding"
+    state.clicked_method = "artist"
+    found = vertex_facts(state, Memo())
+    assert found["method"] == "From file"
+    shown = {bone["joint"]: bone["ours"] for bone in found["weights"]}
+    assert shown == {j: rig.weights[7, j] for j in shown}
+    state.clicked_method = "now"
+    found = vertex_facts(state, Memo())
+    assert found["method"] == title_of("now")
+    assert found["distances"]
+    state.methods = ["now", "voxel"]
+    state.clicked_method = "voxel"
+    assert vertex_facts(state, Memo()) == {
+        "vertex": 7,
+        "computed": False,
+        "method": title_of("voxel"),
+    }
+    state.panel = "weights"
+    assert "method" not in vertex_facts(state, Memo())

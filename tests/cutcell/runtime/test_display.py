@@ -21,6 +21,7 @@ from cutcell.runtime.display import (
     MAX_LETTERS,
     json_safe,
     printable,
+    short_names,
     shown_name,
     spreadsheet_cell,
     without_folders,
@@ -85,6 +86,22 @@ def test_a_csv_holds_neither_formulas_nor_more_lines(tmp_path):
     rows = list(csv.reader(text.splitlines()))
     assert len(rows) == 4
     assert rows[0] == ["vertex", f"'{names[0]}", "a\\nb,c", "\\x1b[31m", 'x"y', "hips"]
+
+
+def test_shared_prefixes_of_joints_are_dropped_and_long_names_cut_in_the_middle():
+    bare = ["Hips", "Spine", "Head", "Neck"]
+    full = ["Armature", *(f"mixamorig:{name}" for name in bare)]
+    assert short_names(full) == ["Armature", *bare]
+    for whole in (["hand.L", "hand.R"], ["Bone.001", "Bone.002", "Bone.003"], [], ["a"]):
+        assert short_names(whole) == whole
+    long = [f"a_{'very_' * 20}long_joint_{side}" for side in "LR"]
+    assert all(len(name) <= 24 and "…" in name for name in short_names(long))
+    assert [name[-1] for name in short_names(long)] == ["L", "R"]
+
+
+@given(st.lists(st.text("ab:_|. ", max_size=40), unique=True))
+def test_short_names_stay_different(names):
+    assert len(set(short_names(names))) == len(names)
 
 
 @given(st.dictionaries(st.text(st.characters()), st.text(st.characters())))
