@@ -13,4 +13,13 @@ export function element(tag, {aria = {}, on = {}, icon, ...properties} = {}, ...
   return made
 }
 
+const TAIL = 7  // letters at the end of a name that are always seen
+
+// A name that a narrow box shortens in the middle: what tells joints apart is often at its end.
+export function nameElement(text) {
+  const [start, tail] = [text.slice(0, -TAIL), text.slice(-TAIL)]
+  const parts = [["start", start], ["tail", tail]]
+  return element("span", {className: "name"}, ...parts.map(([className, textContent]) => element("span", {className, textContent})))
+}
+
 export const button = (about, ...children) => element("button", {type: "button", ...about}, ...children)

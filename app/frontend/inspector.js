@@ -1,5 +1,6 @@
 // The card of one vertex: its weights as bars, its nearest bones, where it belongs.
 
+import {nameElement} from "./elements.js"
 import {stylesheet} from "./styles.js"
 import {lengthText, percentText, weightText} from "./text.js"
 
@@ -26,7 +27,7 @@ function row(model, {joint, name, short}, bars, value, spoken) {
   made.setAttribute("aria-label", spoken)
   const track = element("span", "bars")
   track.append(...bars)
-  made.append(element("span", "name", short ?? name), track, element("span", "value", value))
+  made.append(nameElement(short ?? name), track, element("span", "value", value))
   made.addEventListener("click", () => model.send_msg({type: "bone", joint}))
   return made
 }
@@ -130,7 +131,7 @@ function explained(bone, first) {
   const summary = element("summary")
   const dot = element("span", "dot")
   dot.style.background = bone.color
-  summary.append(dot, element("span", "name", bone.short ?? bone.name), element("span", "value", weightText(bone.steps.at(-1)[1])))
+  summary.append(dot, nameElement(bone.short ?? bone.name), element("span", "value", weightText(bone.steps.at(-1)[1])))
   summary.title = bone.name
   root.append(summary)
   if (bone.path.length) {
@@ -161,7 +162,7 @@ function overruling(model, facts) {
     input.defaultValue = String(Number(weight.toFixed(3)))
     input.setAttribute("aria-label", `Weight of ${name}`)
     label.title = name
-    label.append(dot, element("span", "name", short ?? name), input)
+    label.append(dot, nameElement(short ?? name), input)
     form.append(label)
     return [joint, input]
   })

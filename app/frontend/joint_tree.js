@@ -1,12 +1,11 @@
 // The joints as a tree: one stop of the Tab key, the arrows walk in it, Space lets a joint carry
 // weight or not.
 
+import {nameElement} from "./elements.js"
 import {closedAtFirst, Forest} from "./forest.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("joint_tree.css")
-
-const TAIL = 7  // letters at the end of a name that are always seen
 
 const LOCK = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 11h12v9H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"/></svg>'
 
@@ -58,9 +57,8 @@ export function render({model}) {
     box.addEventListener("click", (e) => { e.stopPropagation(); carry(i) })
     const chip = element("span", row.control ? "chip control" : "chip", "", made)
     chip.style.setProperty("--own", row.color)
-    const name = element("span", "name", "", made)
-    element("span", "start", row.short.slice(0, -TAIL), name)
-    element("span", "tail", row.short.slice(-TAIL), name)
+    const name = nameElement(row.short)
+    made.append(name)
     name.title = row.why ? `${row.name}: ${row.why}` : row.name
     if (row.locked) {
       const lock = element("span", "lock", "", made)

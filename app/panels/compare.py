@@ -71,7 +71,7 @@ def about(rig: Rig | None) -> str:
     """Return what the columns of errors tell, and against what."""
     if rig is not None and rig.weights is None:
         return "The file has no weights to compare with."
-    return "Errors against the original weights: L1 (weights) and mm (motion)."
+    return "L1 (weights) and mm (motion): errors against the original weights."
 
 
 def _field(state: State) -> pmui.RadioButtonGroup:

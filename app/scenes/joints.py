@@ -49,8 +49,8 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     list of dict
         "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
         bones, or nothing, rather than skin), "why" it is one, "carries" (whether it may carry
-        weight), "changed" (whether that was corrected), "ours" and "file" (shares of the skin, or None),
-        "locked", "gain" and "radius".
+        weight), "changed" (whether that was corrected), "ours" and "file" (shares of the skin,
+        or None), "locked", "gain" and "radius".
     """
     rig = state.rig
     skeleton = rig.skeleton

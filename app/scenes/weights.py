@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.runtime.display import short_names
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_dots
@@ -101,7 +102,7 @@ def weights_look(
     )
     coloured = colors in ("mix", "dominant")
     if coloured:
-        bone = state.rig.skeleton.names[state.joint]
+        bone = short_names(state.rig.skeleton.names)[state.joint]
         color = colors_of(state.rig)[state.joint]
         legend = replace(legend, swatches=((tuple(color.tolist()), bone),))
     if weights is state.rig.weights and colors not in DIFFERENCES:

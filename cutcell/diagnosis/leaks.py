@@ -175,7 +175,7 @@ def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Find
         "note",
         f"{count(len(asymmetric), 'vertex', 'follow')} other joints than the mirror image does, "
         "though mesh and skeleton are mirrored.",
-        "Mirror one side, or bind with --symmetric.",
+        "Mirror one side, or bind symmetrically.",
         vertices=asymmetric,
         joints=joints,
         pose=pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric),
