@@ -39,8 +39,8 @@ def colors_of(rig: Rig) -> NDArray[np.float64]:
         owner = np.asarray(owner).ravel()
         sizes = np.bincount(owner, minlength=len(skeleton.parents))
         neighbours = _touching(mesh.faces, owner), _nearby(mesh.vertices, owner)
-        colors = joint_colors(skeleton.parents, *neighbours, sizes)
-        cached = _of_mesh[mesh] = weights, tree, colors
+        cached = weights, tree, joint_colors(skeleton.parents, *neighbours, sizes)
+        _of_mesh[mesh] = cached
     colors: NDArray[np.float64] = cached[2]
     return colors
 
