@@ -14,7 +14,7 @@ from pathlib import Path
 
 MAX_LETTERS = 80
 """Of a name."""
-SHORT_LETTERS = 24
+SHORT_LETTERS = 36
 """Of a joint's name in a list or a menu."""
 MAX_NAMES = 6
 """Of a list of names."""
