@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
+from cutcell.runtime.display import short_names
 from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
@@ -56,7 +57,7 @@ def looks_at_weights(visit, rig, binding):
     name, weight = rig.skeleton.names[strongest], binding.weights[vertex, strongest]
     row = visit.card.get_by_role("button", name=f"{name}: weight {weight:.2f}")
     row.click()
-    visit.expect_text(f"Weight of {name}")
+    visit.expect_text(f"Weight of {short_names(rig.skeleton.names)[strongest]}")
     assert changed(mixed, visit.look()) > 0.002
     visit.close_card()
     visit.choose("Colour by", "Difference from the file's")
@@ -82,7 +83,7 @@ def follows_the_distance(visit, rig, binding):
     shown = "Array.from(__cutcell.renderer.actors.get('body').values)"
     visit.settle()
     values = np.array(visit.page.evaluate(shown))
-    field = binding.distances.on_mesh(rig.skeleton.names.index(name))
+    field = binding.distances.on_mesh(short_names(rig.skeleton.names).index(name))
     # What is far was not measured here.
     near = np.isfinite(field) & (binding.distances.fallback == 0)
     assert near.mean() > 0.01
@@ -94,7 +95,7 @@ def turns_a_joint(visit, rig, binding):
     still = visit.points()
     visit.slide("About Z", "ArrowRight", 20)
     visit.settle()
-    joint = rig.skeleton.names.index(visit.bone.inner_text())
+    joint = short_names(rig.skeleton.names).index(visit.bone.inner_text())
     turns = joint_turns(rig, {joint: turn("z", 20)})
     scene = pose_in_scene(rig, cutcell.forward_kinematics(rig.skeleton, turns))
     expected = cutcell.linear_blend_skinning(still, binding.weights, scene)
