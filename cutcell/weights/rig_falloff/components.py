@@ -15,6 +15,8 @@ POINTS = 9
 """Samples along each bone."""
 CELLS = 64
 """Along each side of the grid that sorts the samples, so that a face visits those under it only."""
+SMALL = 0.25
+"""Of the longest side: a component up to this large may be a rigid accessory, or of one joint."""
 INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 
@@ -27,6 +29,15 @@ def label_components(faces, count):
         low = union(first, faces[f, 0], faces[f, 1])
         union(first, low, faces[f, 2])
     return labels(first)[0]
+
+
+def longest_sides(points: NDArray[np.float64], component: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Measure the longest side of each component, shape (components,), from points (k, 3)."""
+    low = np.full((int(component.max()) + 1, 3), np.inf)
+    high = -low
+    np.minimum.at(low, component, points)
+    np.maximum.at(high, component, points)
+    return (high - low).max(axis=1)
 
 
 def bone_containment(

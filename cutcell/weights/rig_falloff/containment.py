@@ -7,46 +7,105 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
-from .components import bone_containment
+from ...rig import Skeleton
+from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
 
 PENALTY = 2.0
 """Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
 outside of while it is inside another one."""
+PART_OF_BODY = 0.1
+"""Of the largest component's area: a component of one joint, such as an eyeball, is at most this
+large. The head of a machine of many parts is larger."""
+BODY = 1 / 3
+"""Of the surface: where the largest component is smaller, the mesh is a machine of many parts."""
+BARRED = 1e6
+"""Factor of a bone's distance on components that its joint does not follow at all."""
 RIGID = 0.9, 0.92
 """A component is rigid if one joint is the strongest on the second part of its area; less and less
 rigid down to the first."""
 
 
-def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> NDArray[np.float64]:
-    """Measure which part of each joint's bones lies inside each component.
+def joint_containment(
+    surface: SurfaceOperators, bones: Bones, skeleton: Skeleton | None, joints: int
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Measure which part of each joint's bones lies inside each component, and which it owns.
 
     Of several bones of a joint, the one that is inside a component most counts there.
 
     Returns shapes (components, j).
     """
     if not surface.component.any():  # a lone component: no bone belongs more to another
-        return np.ones((1, joints))
-    of_bone = bone_containment(surface.points, surface.faces, surface.component, bones)
-    containment = np.zeros((len(of_bone), joints))
+        return np.ones((1, joints)), np.zeros((1, joints), np.bool_)
+    with_bones, first = np.unique(bones.joint, return_index=True)
+    place = bones.start[first]
+    segments = Bones(
+        np.concatenate([bones.start, place]),
+        np.concatenate([bones.end, place]),
+        np.concatenate([bones.joint, with_bones]),
+    )
+    part = bone_containment(surface.points, surface.faces, surface.component, segments)
+    of_bone, inside = part[:, : len(bones.joint)], part[:, len(bones.joint) :] > 0
+    containment, starts = np.zeros((2, len(part), joints))
     np.maximum.at(containment.T, bones.joint, of_bone.T)
-    return containment
+    starts[:, with_bones] = inside
+    return containment, _owned(surface, skeleton, containment, starts > 0)
 
 
-def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.float64]:
+def _owned(
+    surface: SurfaceOperators,
+    skeleton: Skeleton | None,
+    containment: NDArray[np.float64],
+    starts: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """Find the joints that small closed components enclose, such as an eyeball: (components, j).
+
+    These are last joints with no other joint beside them in the component. Where their bones end is
+    a guess, so that the joint itself counts, unless another such component contains more of its
+    bone. The parts of a machine overlap: there no joint owns any.
+
+    Shapes: containment, starts (components, j).
+    """
+    areas = np.bincount(surface.component, surface.areas, len(starts))
+    chosen = (starts.sum(axis=1) == 1) & (areas <= PART_OF_BODY * areas.max())
+    chosen &= longest_sides(surface.points, surface.component) <= SMALL
+    if skeleton is None or not chosen.any() or areas.max() < BODY * areas.sum():
+        return np.zeros_like(starts)
+    chosen[surface.component[_open_edges(surface.faces)]] = False
+    is_last = (skeleton.subtree & skeleton.deform).sum(axis=1) <= 1
+    owned = starts & chosen[:, None] & is_last
+    elsewhere = np.where(~starts & chosen[:, None], containment, 0).max(axis=0)
+    owned &= np.where(owned, containment, 0).max(axis=0) >= elsewhere
+    if not (skeleton.deform & ~owned.any(axis=0)).any():
+        owned[:] = False  # no other joint can take the rest
+    return owned
+
+
+def _open_edges(faces: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Return one vertex of each edge that only one face has."""
+    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
+    key, count = np.unique(edges[:, 0] << 32 | edges[:, 1], return_counts=True)
+    return key[count == 1] >> 32
+
+
+def cross_component_penalty(
+    containment: NDArray[np.float64], owned: NDArray[np.bool_]
+) -> NDArray[np.float64]:
     """Return the factor by which each joint's distance grows on each component.
 
     An arm whose mesh is a separate component reaches into the shoulder, and its bone with it;
     the surface of the chest there is not the arm's. No factor is on the component that contains
-    most of a joint's bone, nor on one that contains more of this bone than of any other.
+    most of a joint's bone, nor on one that contains more of this bone than of any other. A joint
+    that owns components keeps to them.
 
-    Shapes: containment (components, j); returns (components, j).
+    Shapes: containment, owned (components, j); returns (components, j).
     """
     of_joint, of_component = containment.max(axis=0), containment.max(axis=1, keepdims=True)
     belongs = containment / np.maximum(np.minimum(of_joint, of_component), 1e-300)
     belongs[:, of_joint == 0] = 1
     penalty = 1 + PENALTY * (1 - np.minimum(belongs, 1))
     penalty[of_component[:, 0] == 0] = 1
+    penalty[~owned & owned.any(axis=0)] = BARRED
     return penalty
 
 

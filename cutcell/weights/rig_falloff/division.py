@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
+from ...geodesics.fallback import straight_to_nearest
 from ...geometry.vectors import segment_fraction
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
-from .containment import cross_component_penalty, joint_containment
+from .containment import BARRED, cross_component_penalty, joint_containment
 from .surface_operators import SurfaceOperators
 
 POWER = 30
@@ -30,6 +31,8 @@ MIN_RADIUS = 0.5
 CONNECTED = 0.02
 """Of the longest side: a bone that ends as near as this to where another joint's bone begins leads
 on to it."""
+NEAREST = 3
+"""Bones that a vertex has straight distances to where all measured joints are barred from it."""
 MIN_SHARE = 1e-3
 """A vertex with a smaller share of a joint does not count as that joint's surface."""
 
@@ -74,10 +77,11 @@ class Division:
         Where distances are the same as those `before`, which is of the same surface, its weights
         are taken over.
         """
+        joints, vertices = distances.at_welded.shape
+        containment, owned = joint_containment(surface, distances.bones, distances.skeleton, joints)
+        penalty = cross_component_penalty(containment, owned)
+        distances = _without_barred(distances, surface, penalty >= BARRED)
         distance = distances.at_welded
-        joints, vertices = distance.shape
-        containment = joint_containment(surface, distances.bones, joints)
-        penalty = cross_component_penalty(containment)
         if adjustments is not None:
             penalty = penalty / adjustments.gain
         if before is None:
@@ -156,6 +160,26 @@ def _divide_by_distance(
                 total += weights[v, j]
         for j in range(len(distance)):
             weights[v, j] /= total
+
+
+def _without_barred(
+    distances: BoneDistances, surface: SurfaceOperators, barred: NDArray[np.bool_]
+) -> BoneDistances:
+    """Give vertices straight distances to other joints where all measured joints are barred.
+
+    Shapes: barred (components, j).
+    """
+    distance, bones = distances.at_welded, distances.bones
+    if not barred.any():
+        return distances
+    usable = np.isfinite(distance) & ~barred[surface.component].T
+    lost = np.flatnonzero(~usable.any(axis=0))
+    is_barred = np.asarray(barred.any(axis=0))
+    free = bones.subset(~is_barred[bones.joint])
+    straight = straight_to_nearest(surface.points[lost], free, NEAREST)
+    distance = distance.copy()
+    np.minimum.at(distance, (free.joint[:, None], lost), straight)
+    return replace(distances, at_welded=distance)
 
 
 @no_refcount

@@ -9,11 +9,10 @@ from scipy.sparse import csr_array
 from ...geodesics.bones import TIE
 from ...geodesics.nearest import NodeGrid
 from ...graph import CutCellGraph
+from .components import SMALL, longest_sides
 from .containment import ramp
 from .surface_operators import SurfaceOperators
 
-SMALL = 0.25
-"""Of the longest side: a component up to this large may be an accessory."""
 CONTACT = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
 than at its nearest vertex."""
@@ -38,7 +37,7 @@ def attach_accessories(
     points, component, areas = surface.points, surface.component, surface.areas
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
-    is_small = _longest_sides(points, component) <= SMALL
+    is_small = longest_sides(points, component) <= SMALL
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
@@ -94,16 +93,6 @@ def _contact_weights(
     share = np.maximum(strongest, mean)
     alone = ramp(share.max(axis=1, keepdims=True), *DOMINANT)
     return mean + alone * (joints[share.argmax(axis=1)] - mean)
-
-
-def _longest_sides(
-    points: NDArray[np.float64], component: NDArray[np.int32]
-) -> NDArray[np.float64]:
-    low = np.full((int(component.max()) + 1, 3), np.inf)
-    high = -low
-    np.minimum.at(low, component, points)
-    np.maximum.at(high, component, points)
-    return (high - low).max(axis=1)
 
 
 def _nearest_on_body(

@@ -6,7 +6,13 @@ import pytest
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.geodesics import Bones
 from cutcell.weights.rig_falloff.components import POINTS, bone_containment, label_components
-from cutcell.weights.rig_falloff.containment import RIGID, cross_component_penalty, make_rigid, ramp
+from cutcell.weights.rig_falloff.containment import (
+    RIGID,
+    cross_component_penalty,
+    joint_containment,
+    make_rigid,
+    ramp,
+)
 from cutcell.weights.rig_falloff.rigid_accessories import attach_accessories
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests import meshes
@@ -52,13 +58,15 @@ def test_points_on_edges_are_counted_once():
 
 def test_a_bone_in_another_component_counts_as_farther():
     containment = np.array([[1.0, 0.2, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.0]])
-    penalty = cross_component_penalty(containment)
+    penalty = cross_component_penalty(containment, np.zeros_like(containment, bool))
     np.testing.assert_allclose(penalty[0], [1, 2.5, 1])
     np.testing.assert_allclose(penalty[1], [3, 1, 1])
     np.testing.assert_allclose(penalty[2], 1)  # it contains no bone
     # No penalty either where a bone is most of what a component contains, as one within another.
     half = np.array([[1.0, 0.5], [0.0, 0.25]])
-    np.testing.assert_allclose(cross_component_penalty(half), [[1, 1], [3, 1]])
+    np.testing.assert_allclose(
+        cross_component_penalty(half, np.zeros_like(half, bool)), [[1, 1], [3, 1]]
+    )
     np.testing.assert_allclose(cross_component_penalty(containment[:1]), 1)
 
 
@@ -137,3 +145,34 @@ def test_what_has_no_area_is_no_accessory():
     for mesh in (lines, stray):
         weights = bind(Rig(TriangleMesh(*mesh), skeleton), 16).weights
         np.testing.assert_allclose(weights.sum(axis=1), 1)
+
+
+def head_with_eyes():
+    """Make a ball with two small balls in its surface, and a joint in each."""
+    places = [[0.4, 0.12, 0.55], [0.6, 0.12, 0.55]]
+    small = [(0.08 * (meshes.ball(1)[0] - 0.5) / 0.45 + at, meshes.ball(1)[1]) for at in places]
+    mesh = TriangleMesh(*joined(meshes.ball(3), *small))
+    joints = [[0.5, 0.5, 0.1], [0.5, 0.5, 0.4], *places]
+    return Rig(mesh, Skeleton(joints, [-1, 0, 1, 1], ["neck", "top", "a", "b"]))
+
+
+def test_a_joint_in_a_small_component_of_its_own_keeps_to_it():
+    rig = head_with_eyes()
+    count = len(meshes.ball(3)[0])
+    weights = bind(rig, 24).weights
+    assert weights[:count, 2:].max() == 0
+    each = np.arange(count, len(weights)) >= count + len(meshes.ball(1)[0])
+    np.testing.assert_allclose(weights[count:][~each, 2], 1, atol=1e-6)
+    np.testing.assert_allclose(weights[count:][each, 3], 1, atol=1e-6)
+
+
+def test_no_component_is_of_two_joints():
+    rig = head_with_eyes()
+    joints = np.concatenate([rig.skeleton.joints, rig.skeleton.joints[2:3] + 0.01])
+    graph = build_graph(rig.mesh, 16)
+    surface = SurfaceOperators.of(graph)
+    skeleton = Skeleton(joints, [-1, 0, 1, 1, 1])
+    place = graph.lattice.to_unit(joints)
+    bones = Bones(place, place, np.arange(5, dtype=np.int32))
+    owned = joint_containment(surface, bones, skeleton, 5)[1]
+    np.testing.assert_array_equal(owned.any(axis=0), [False, False, False, True, False])
