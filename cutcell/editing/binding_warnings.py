@@ -34,6 +34,7 @@ def binding_warnings(
     is_locked = locked_joints(rig, [*locked, *locked_by(corrections)])
     return (
         *_of_distances(distances.graph, distances),
+        *_inferred_bones(rig, distances),
         *_weightless(rig, weights),
         *_blocked_by_locks(rig, distances.graph, corrections, is_locked),
         *_against_locks(rig, corrections, is_locked),
@@ -58,6 +59,16 @@ def _of_distances(graph: CutCellGraph, distances: BoneDistances) -> Iterator[str
         yield (
             "no lattice point lies inside the mesh, distances run over its surface alone: it is "
             "open, or thinner than a lattice cell. Try a higher resolution"
+        )
+
+
+def _inferred_bones(rig: Rig, distances: BoneDistances) -> Iterator[str]:
+    names, pairs = rig.skeleton.names, distances.bones.inferred
+    if pairs:
+        bones = listed([f"{names[a]} to {names[b]}" for a, b in pairs])
+        yield (
+            f"{len(pairs)} bones were inferred, which the file does not have: {bones}. "
+            "To leave one out, make its second joint a child of the joint that it belongs to"
         )
 
 

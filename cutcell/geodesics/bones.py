@@ -32,11 +32,14 @@ class Bones:
         Ends of each bone; equal if the bone is a point.
     joint : array, shape (b,), int32
         The joint at the parent end of the bone, which moves it. Ascending.
+    inferred : tuple of pairs of int
+        The joints at the ends of bones that the joint tree of the file does not have.
     """
 
     start: NDArray[np.float64]
     end: NDArray[np.float64]
     joint: NDArray[np.int32]
+    inferred: tuple[tuple[int, int], ...] = ()
 
     def subset(self, which: NDArray[np.bool_]) -> Bones:
         """Return those bones for which `which`, shape (b,), is true."""

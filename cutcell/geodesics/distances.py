@@ -253,7 +253,7 @@ def bone_distances(
     progress("distances", 0.0)
     if allowed is not None:
         check_allowed(graph, skeleton, allowed)
-    bones, aimed = solver.bones(skeleton, method.leaf)
+    bones, aimed = solver.bones(skeleton, method.leaf, allowed)
     sources = solver.sources(bones, method.samples)
     bones, sources = solver.aim(bones, sources, aimed, method.samples, progress)
     node = solver.targets if allowed is None else graph.vertex_node

@@ -49,10 +49,15 @@ class BoneDistanceSolver:
         """The graph with fewer nodes, with connectivity "any"."""
         return self._contract() if self._contract else None
 
-    def bones(self, skeleton: Skeleton, leaf: str) -> tuple[Bones, NDArray[np.bool_]]:
-        """Place bones in the unit cube; also return which leaf bones are yet to be aimed, (b,)."""
+    def bones(
+        self, skeleton: Skeleton, leaf: str, allowed: NDArray[np.bool_] | None = None
+    ) -> tuple[Bones, NDArray[np.bool_]]:
+        """Place bones in the unit cube; also return which leaf bones are yet to be aimed, (b,).
+
+        Shapes: allowed (n, j), see `Rig.allowed`.
+        """
         if leaf == "fit":
-            return fit_bones(self.graph, skeleton, self.grid)
+            return fit_bones(self.graph, skeleton, self.grid, allowed)
         bones, to_unit = bone_segments(skeleton, leaf), self.graph.lattice.to_unit
         bones = Bones(to_unit(bones.start), to_unit(bones.end), bones.joint)
         return bones, np.zeros(len(bones.joint), np.bool_)

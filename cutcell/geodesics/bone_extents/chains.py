@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
 from ...rig import Skeleton
+from .face import is_eye_part, is_face_part
 from .probe import BodyProbe
 from .rest_axis import rest_directions
 
@@ -28,11 +29,11 @@ PASSES = 0.1
 """A bone to a child that passes another child nearer than this part of its length is none."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
-BACKWARD = (-0.2, -0.5)
-"""Cosine: an inferred bone may bend back by this much, like the hock of a hind leg; where that
-leaves joints over, by more, like the knee of a machine."""
-REACH = 4.0
-"""The length of an inferred bone over that of the bone that it continues, at most."""
+THROUGH_BODY = 1.0
+"""Part of an inferred bone that must run through the body."""
+LENGTH = 1.1
+"""The length of an inferred bone over that of the bone that it continues, at most: the halves of a
+limb are about equally long."""
 CLEARLY = 1.2
 """A bone is inferred if the second-best candidate is farther by this factor; else it is
 ambiguous."""
@@ -63,6 +64,8 @@ class Chains:
         The joints at which the bones of each joint end.
     inferred : tuple of lists
         The joints at which inferred bones end, which the tree does not have.
+    in_face, in_eye : arrays, shape (j,), bool
+        Eyes, brows, jaws...; see `is_face_part` and `is_eye_part`.
     """
 
     joints: NDArray[np.float64]
@@ -72,6 +75,8 @@ class Chains:
     length: NDArray[np.float64]
     ends: tuple[list[int], ...]
     inferred: tuple[list[int], ...]
+    in_face: NDArray[np.bool_]
+    in_eye: NDArray[np.bool_]
 
     @property
     def onward(self) -> NDArray[np.float64]:
@@ -79,10 +84,15 @@ class Chains:
         return self.direction if self.rest is None else self.rest
 
 
-def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
+def find_chains(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    together: NDArray[np.bool_],
+    probe: BodyProbe,
+) -> Chains:
     """Find the bone chains of a skeleton.
 
-    Shapes: joints (j, 3).
+    Shapes: joints (j, 3), together (j, j): which joints one skin holds.
     """
     near = probe.near(joints)
     near |= _leads_in(skeleton, joints, near, probe)
@@ -92,9 +102,15 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
         skeleton = replace(skeleton, parents=parents)
     direction, length = _directions(skeleton, joints, near, same, probe)
     rest = rest_directions(skeleton, joints)
-    ends = _ends(skeleton, joints, near, same, rest)
-    inferred = _inferred_bones(skeleton, joints, direction, length, ends, probe)
-    return Chains(joints, near, direction, rest, length, ends, inferred)
+    in_face = np.array([is_face_part(name) for name in skeleton.names])
+    # What other joints hang on, such as a head named after a face, is none.
+    in_face &= ~(skeleton.subtree & ~in_face & skeleton.deform).any(axis=1)
+    in_eye = in_face & np.array([is_eye_part(name) for name in skeleton.names])
+    ends = _ends(skeleton, joints, near, same, rest, in_face)
+    inferred = _inferred_bones(
+        skeleton, joints, near, direction, length, ends, same, together, probe
+    )
+    return Chains(joints, near, direction, rest, length, ends, inferred, in_face, in_eye)
 
 
 def _leads_in(
@@ -150,10 +166,12 @@ def _ends(
     near: NDArray[np.bool_],
     same: NDArray[np.bool_],
     rest: NDArray[np.float64] | None,
+    in_face: NDArray[np.bool_],
 ) -> tuple[list[int], ...]:
     """List where the bones of each joint end; the joint itself stands for a leaf bone.
 
-    Bones run to the joint's children, see `_branches`. A joint outside the body has no bone.
+    Bones run to the joint's children, see `_branches`. A head whose children are all in the face
+    has a leaf bone besides. A joint outside the body has no bone.
     """
     ends: tuple[list[int], ...] = tuple([] for _ in joints)
     child, parent = np.arange(len(joints)), skeleton.parents
@@ -165,6 +183,8 @@ def _ends(
         if len(children) > 1:
             axis = None if rest is None else rest[j]
             children[:] = _branches(j, children, joints, axis)
+        if children and not in_face[j] and in_face[children].all():
+            children.append(j)
     return ends
 
 
@@ -195,35 +215,45 @@ def _branches(
 def _inferred_bones(
     skeleton: Skeleton,
     joints: NDArray[np.float64],
+    near: NDArray[np.bool_],
     direction: NDArray[np.float64],
     length: NDArray[np.float64],
     ends: tuple[list[int], ...],
+    same: NDArray[np.bool_],
+    together: NDArray[np.bool_],
     probe: BodyProbe,
 ) -> tuple[list[int], ...]:
-    """Infer bones from the ends of chains to joints at which no bone ends, as from shin to foot.
+    """Infer bones from the ends of chains to joints that hang on a control, as from shin to foot.
 
-    Each must be the other's clear choice: the nearest through the body, and not backward.
+    Each must be the other's clear choice: the nearest through the body, onward and not far. No
+    other bone ends at either. `together`, shape (j, j), marks joints that one skin holds.
     """
     inferred: tuple[list[int], ...] = tuple([] for _ in joints)
-    loose = np.flatnonzero(skeleton.deform & (length == 0))
-    has_end = np.array([len(those) > 0 for those in ends])
-    leaves = np.flatnonzero(skeleton.deform & ~has_end & (length > 0))
-    away = joints[loose] - joints[leaves, None]
+    deform, parents = skeleton.deform, skeleton.parents
+    is_end = (length > 0) & deform
+    is_end[[k for j, those in enumerate(ends) for k in those if k != j]] = True
+    arriving = (same & together) @ is_end.astype(int)
+    has_bone = (same & together) @ np.array([len(those) > 0 for those in ends])
+    # A root whose chain forks is the trunk of something else.
+    forks = np.array([len(those) > 1 for those in ends])
+    is_trunk = skeleton.subtree @ forks
+    on_control = np.where(parents >= 0, ~(deform & near)[parents], ~is_trunk)
+    goals = np.flatnonzero(deform & on_control & (arriving == 0))
+    leaves = np.flatnonzero(deform & (length > 0) & (arriving == 1) & ~has_bone)
+    away = joints[goals] - joints[leaves, None]
     far = np.linalg.norm(away, axis=2)
-    onward = np.einsum("tlc,tc->tl", away, direction[leaves])
-    fits = (far >= SAME_PLACE) & ~skeleton.subtree[loose][:, leaves].T
-    fits &= (far <= REACH * length[leaves, None]) & (onward >= BACKWARD[-1] * far)
+    fits = together[np.ix_(leaves, goals)] & ~skeleton.subtree[np.ix_(goals, leaves)].T
+    fits &= (far >= SAME_PLACE) & (far <= LENGTH * length[leaves, None])
+    fits &= np.einsum("tgc,tc->tg", away, direction[leaves]) >= 0
     leaf, goal = fits.nonzero()
-    fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[loose[goal]]) >= IN_BODY
-    for backward in BACKWARD:
-        distance = np.where(fits & (onward >= backward * far), far, np.inf)
-        choice = _clear_choice(distance, joints[loose])
-        suits = np.arange(len(loose)) == choice[:, None]
-        suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
-        chosen = np.flatnonzero(suitor >= 0)
-        for k in chosen:
-            inferred[leaves[suitor[k]]].append(int(loose[k]))
-        fits[suitor[chosen]], fits[:, chosen] = False, False
+    part = probe.inner_part(joints[leaves[leaf]], joints[goals[goal]])
+    fits[leaf, goal] = part >= THROUGH_BODY
+    distance = np.where(fits, far, np.inf)
+    choice = _clear_choice(distance, joints[goals])
+    suits = np.arange(len(goals)) == choice[:, None]
+    suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
+    for k in np.flatnonzero(suitor >= 0):
+        inferred[leaves[suitor[k]]].append(int(goals[k]))
     return inferred
 
 

@@ -8,6 +8,7 @@ the skin nearest to it is known, it is aimed at the middle of that skin.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from ..bones import Bones
 from ..nearest import NodeGrid
 from .chains import SAME_PLACE, Chains, find_chains
 from .probe import BodyProbe
+from .skins import characters, share_a_skin
 
 REGION_LEAVES = 3
 """Leaf bones that skin is assigned to, its nearest. In the middle between left and right there are
@@ -33,19 +35,55 @@ PART_OF_REACH = 0.5
 """A bone along a rest axis ends half-way to where it would leave the body: further out the skin is
 close to its end."""
 MIN_CELLS = 2.0
-"""Lattice cells: such a bone is at least this long, if the body is still near there. Shorter ones
-have hardly any direction."""
+"""Lattice cells of the character alone: such a bone is at least this long, if the body is still
+near there. Shorter ones have hardly any direction."""
 
 
 def fit_bones(
-    graph: CutCellGraph, skeleton: Skeleton, grid: NodeGrid
+    graph: CutCellGraph,
+    skeleton: Skeleton,
+    grid: NodeGrid,
+    allowed: NDArray[np.bool_] | None = None,
 ) -> tuple[Bones, NDArray[np.bool_]]:
-    """Find the bones of every joint that may carry weight.
+    """Find the bones of every joint that may carry weight, of each character by itself.
 
-    Returns shapes aimed (b,).
+    Shapes: allowed (n, j), see `Rig.allowed`; returns aimed (b,).
     """
     probe = BodyProbe(graph, grid)
-    chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
+    together = share_a_skin(allowed, len(skeleton.joints))
+    parts = []
+    for joints, own in characters(skeleton, together):
+        size = 1.0
+        if len(joints) < len(together):
+            assert allowed is not None
+            points = graph.nodes[graph.vertex_node[allowed[:, joints].any(axis=1)]]
+            size = float(np.ptp(points, axis=0).max()) if len(points) else size
+        of_skin = together[np.ix_(joints, joints)]
+        parts.append(_fit_character(joints, own, of_skin, graph, probe, size))
+    joint = np.concatenate([bones.joint for bones, _ in parts])
+    order = np.argsort(joint, kind="stable")
+    bones = Bones(
+        np.concatenate([bones.start for bones, _ in parts])[order],
+        np.concatenate([bones.end for bones, _ in parts])[order],
+        joint[order],
+        tuple(pair for bones, _ in parts for pair in bones.inferred),
+    )
+    return bones, np.concatenate([aimed for _, aimed in parts])[order]
+
+
+def _fit_character(
+    number: NDArray[np.intp],
+    skeleton: Skeleton,
+    together: NDArray[np.bool_],
+    graph: CutCellGraph,
+    probe: BodyProbe,
+    size: float,
+) -> tuple[Bones, NDArray[np.bool_]]:
+    """Find the bones of a skeleton whose joints have these numbers, shape (j,), in the file.
+
+    `size` is the longest side of its mesh.
+    """
+    chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), together, probe)
     start, end = [], []
     for j in np.flatnonzero(skeleton.deform).tolist():
         ends = chains.ends[j] + chains.inferred[j] or [j]
@@ -58,11 +96,15 @@ def fit_bones(
     onward = chains.onward[leaves]
     reach = probe.exit_distance(chains.joints[leaves], onward)
     bones.end[leaf] += onward * reach[:, None]
-    length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe)
+    length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe, size)
+    length[chains.in_eye[leaves]] = 0
     bones.end[leaf] = chains.joints[leaves] + onward * length[:, None]
     aimed = leaf.copy()
-    aimed[leaf] = ~on_axis & chains.near[leaves]
-    return bones, aimed
+    aimed[leaf] = ~on_axis & chains.near[leaves] & ~chains.in_eye[leaves]
+    inferred = tuple(
+        (int(number[j]), int(number[k])) for j, goals in enumerate(chains.inferred) for k in goals
+    )
+    return Bones(bones.start, bones.end, number[joint].astype(np.int32), inferred), aimed
 
 
 def _leaf_lengths(
@@ -71,8 +113,9 @@ def _leaf_lengths(
     chains: Chains,
     reach: NDArray[np.float64],
     probe: BodyProbe,
+    size: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Measure the lengths of the leaf bones.
+    """Measure the lengths of the leaf bones of a character with this longest side.
 
     Each ends where it leaves the body (`reach`), or where it comes nearer, through the body, to
     the bone of another joint than to its own joint: a jaw does not continue through the skull.
@@ -81,23 +124,29 @@ def _leaf_lengths(
     """
     joint = bones.joint[leaf]
     place, onward = chains.joints[joint], chains.onward[joint]
-    length = probe.distance_to_others(place, onward, reach, _others(bones, leaf, joint, place))
+    length = probe.distance_to_others(place, onward, reach, _others(bones, leaf, chains))
     if chains.rest is None:
         return length, np.zeros(len(joint), np.bool_)
     length *= PART_OF_REACH
-    least = MIN_CELLS / probe.resolution
+    least = MIN_CELLS * size / probe.resolution
     on_axis = probe.near(place + onward * least) | (length > least)
     return np.where(on_axis, np.maximum(length, least), length), on_axis
 
 
 def _others(
-    bones: Bones, leaf: NDArray[np.bool_], joints: NDArray[np.int32], places: NDArray[np.float64]
+    bones: Bones, leaf: NDArray[np.bool_], chains: Chains
 ) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Yield for each joint the bones of others that do not end at it; of leaf bones the start."""
+    """Yield for each leaf bone those of others that do not end at it; of leaf bones the start.
+
+    The face does not end the bone of a head.
+    """
     end = np.where(leaf[:, None], bones.start, bones.end)
-    for joint, place in zip(joints, places, strict=True):
-        ends_here = np.abs(bones.end - place).max(axis=1) < SAME_PLACE
-        other = (bones.joint != joint) & ~ends_here
+    of_face = chains.in_face[bones.joint]
+    for joint in bones.joint[leaf]:
+        ends_at_it = np.abs(bones.end - chains.joints[joint]).max(axis=1) < SAME_PLACE
+        other = (bones.joint != joint) & ~ends_at_it
+        if not chains.in_face[joint]:
+            other &= ~of_face
         yield bones.start[other], end[other]
 
 
@@ -120,7 +169,7 @@ def aim_leaf_bones(
     _sum_regions(points, area, distance, nearest, total, middle)
     has_skin = total > 0
     end[np.flatnonzero(aimed)[has_skin]] = middle[has_skin] / total[has_skin, None]
-    return Bones(bones.start, end, bones.joint)
+    return replace(bones, end=end)
 
 
 @no_refcount

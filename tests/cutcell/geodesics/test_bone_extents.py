@@ -82,6 +82,7 @@ def test_a_foot_hung_on_the_root_continues_the_shin():
     root, foot = [0.5, -0.6, 0.1], [0.8, 0.1, 0.1]
     skeleton = Skeleton([root, *on_axis(0.2, 0.5), foot], [-1, 0, 1, 0])
     np.testing.assert_allclose(ends(graph, skeleton, 2), on_axis(0.8))
+    assert fit_bones(graph, skeleton, node_grid(graph))[0].inferred == ((2, 3),)
     # The root itself is outside: it has no bone.
     np.testing.assert_allclose(ends(graph, skeleton, 0), [root])
     # Of two that are about as near neither is right: it ends where they are nearer.
@@ -164,3 +165,77 @@ def test_a_last_bone_ends_where_another_is_nearer():
     joints = [*on_axis(0.9, 0.8), *on_axis(0.3, 0.25, 0.2)]
     skeleton = Skeleton(joints, [-1, 0, -1, 2, 3])
     np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(0.55), atol=1 / 32)
+
+
+LIMB = [[0.5, -0.6, 0.1], *on_axis(0.2, 0.5), [0.75, 0.1, 0.1]]
+CONTROL = [False, True, True, True]
+
+
+def inferred(graph, *arguments, allowed=None, **options):
+    """List the joints between which bones are inferred."""
+    return fit_bones(graph, Skeleton(*arguments, **options), node_grid(graph), allowed)[0].inferred
+
+
+def test_bones_are_inferred_only_to_joints_on_controls():
+    graph = limb()
+    assert inferred(graph, LIMB, [-1, 0, 1, 0], deform=CONTROL) == ((2, 3),)
+    # Its parent has a bone that does not lead there: an ear is not continued by a hand.
+    hand = [*LIMB, *on_axis(0.9)]
+    assert inferred(graph, hand, [-1, 0, 1, 4, 0], deform=[*CONTROL, True]) == ()
+    # Farther than the bone before: a toe is not continued by a head.
+    far = [*LIMB[:3], *on_axis(0.95)]
+    assert inferred(graph, far, [-1, 0, 1, 0], deform=CONTROL) == ()
+    # Backward.
+    back = [*LIMB[:3], *on_axis(0.35)]
+    assert inferred(graph, back, [-1, 0, 1, 0], deform=CONTROL) == ()
+
+
+def test_no_bone_is_inferred_to_the_end_of_another():
+    graph, x = limb(), np.array([0.0, 1.8, 3, 6, 0.75, 1.2, 6]) / 6 * 0.9 + 0.05
+    parents = [-1, 0, 1, 2, 0, 0, -1]
+    assert inferred(graph, on_axis(*x), parents) == ()
+
+
+def test_no_bone_is_inferred_between_skins():
+    graph = limb()
+    options = {"deform": CONTROL}
+    allowed = np.zeros((len(graph.vertex_node), 4), bool)
+    allowed[:40, :3], allowed[40:, [0, 3]] = True, True
+    assert inferred(graph, LIMB, [-1, 0, 1, 0], allowed=allowed, **options) == ()
+    allowed[:40, 3] = True
+    assert inferred(graph, LIMB, [-1, 0, 1, 0], allowed=allowed, **options) == ((2, 3),)
+
+
+def test_each_of_two_skeletons_has_the_bones_that_it_has_alone():
+    vertices, faces = grid_box(20)
+    beside = vertices + np.array([0, 0.3, 0])
+    both = TriangleMesh(
+        np.concatenate([vertices, beside]), np.concatenate([faces, faces + len(vertices)])
+    )
+    graph = build_graph(both, 32, connectivity="any")
+    joints, parents = np.array(on_axis(0.1, 0.3, 0.5)), np.array([-1, 0, 1])
+    one = Skeleton(joints, parents)
+    two = Skeleton(np.concatenate([joints, joints + np.array([0, 0.3, 0])]), [-1, 0, 1, -1, 3, 4])
+    allowed = np.zeros((len(both.vertices), 6), bool)
+    allowed[: len(vertices), :3], allowed[len(vertices) :, 3:] = True, True
+    grid = node_grid(graph)
+    bones, aimed = fit_bones(graph, two, grid, allowed)
+    alone, aimed_alone = fit_bones(graph, one, grid)
+    np.testing.assert_array_equal(bones.end[bones.joint < 3], alone.end)
+    np.testing.assert_array_equal(aimed[bones.joint < 3], aimed_alone)
+
+
+@pytest.mark.parametrize("face", [["eye.L", "eye.R"], ["jaw"], ["Eyes", "Mouth"]])
+@pytest.mark.parametrize("is_child", [True, False])
+def test_a_head_goes_on_past_its_face(face, is_child):
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
+    spine = [[0.5, 0.5, z] for z in (0.1, 0.2, 0.35)]
+    places = [[0.4, 0.3, 0.5], [0.6, 0.3, 0.5]][: len(face)]
+    parents = [-1, 0, 1, *[2 if is_child else 1] * len(face)]
+    names = ["root", "neck", "head", *face]
+    head = ends(graph, Skeleton([*spine, *places], parents, names), 2)
+    assert len(head) == 1 + is_child * len(face)
+    np.testing.assert_allclose(head[-1], [0.5, 0.5, 0.95], atol=2 / 32)
+    # Without such names a joint beside ends it, and children continue it.
+    plain = ["root", "neck", "head", "a", "b"][: len(names)]
+    assert (ends(graph, Skeleton([*spine, *places], parents, plain), 2)[:, 2] < 0.8).all()

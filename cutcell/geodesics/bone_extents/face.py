@@ -1,0 +1,35 @@
+"""Joints of a face, which their names show: a head continues past them, up to the crown."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from ...rig.deform_joints.names import words
+
+_FACE = (
+    "brow brows cheek cheeks chin ear ears eye eyes jaw lash lashes lid lids lip lips mouth "
+    "muzzle nose nostril pupil teeth tongue tooth"
+)
+WORDS = frozenset(_FACE.split())
+PARTS = ("eye", "brow", "jaw", "mouth", "tongue", "teeth", "cheek")
+"""The same inside longer words, as in `lefteyelid`."""
+LETTERS = "目眼瞳眉顎口唇歯舌耳鼻"
+"""Japanese: eye, pupil, brow, jaw, mouth, lip, teeth, tongue, ear, nose."""
+
+
+def is_face_part(name: str) -> bool:
+    """Return whether a name is that of a joint in a face."""
+    parts = words(name)
+    return (
+        not WORDS.isdisjoint(parts)
+        or any(part in word for word in parts for part in PARTS)
+        or not set(LETTERS).isdisjoint(unicodedata.normalize("NFKC", name))
+    )
+
+
+def is_eye_part(name: str) -> bool:
+    """Return whether a name is that of an eye, or of a lid or brow, which have no length."""
+    parts = words(name)
+    return any(p in w for w in parts for p in ("eye", "brow", "pupil")) or any(
+        letter in unicodedata.normalize("NFKC", name) for letter in "目眼瞳眉"
+    )
