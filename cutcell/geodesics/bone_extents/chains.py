@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
 from ...rig import Skeleton
-from .face import is_eye_part, is_face_part
+from .face import face_parts
 from .probe import BodyProbe
 from .rest_axis import rest_directions
 
@@ -29,8 +29,6 @@ PASSES = 0.1
 """A bone to a child that passes another child nearer than this part of its length is none."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
-THROUGH_BODY = 1.0
-"""Part of an inferred bone that must run through the body."""
 LENGTH = 1.1
 """The length of an inferred bone over that of the bone that it continues, at most: the halves of a
 limb are about equally long."""
@@ -65,7 +63,7 @@ class Chains:
     inferred : tuple of lists
         The joints at which inferred bones end, which the tree does not have.
     in_face, in_eye : arrays, shape (j,), bool
-        Eyes, brows, jaws...; see `is_face_part` and `is_eye_part`.
+        Eyes, brows, jaws...; see `face_parts`.
     """
 
     joints: NDArray[np.float64]
@@ -102,10 +100,7 @@ def find_chains(
         skeleton = replace(skeleton, parents=parents)
     direction, length = _directions(skeleton, joints, near, same, probe)
     rest = rest_directions(skeleton, joints)
-    in_face = np.array([is_face_part(name) for name in skeleton.names])
-    # What other joints hang on, such as a head named after a face, is none.
-    in_face &= ~(skeleton.subtree & ~in_face & skeleton.deform).any(axis=1)
-    in_eye = in_face & np.array([is_eye_part(name) for name in skeleton.names])
+    in_face, in_eye = face_parts(skeleton)
     ends = _ends(skeleton, joints, near, same, rest, in_face)
     inferred = _inferred_bones(
         skeleton, joints, near, direction, length, ends, same, together, probe
@@ -246,8 +241,7 @@ def _inferred_bones(
     fits &= (far >= SAME_PLACE) & (far <= LENGTH * length[leaves, None])
     fits &= np.einsum("tgc,tc->tg", away, direction[leaves]) >= 0
     leaf, goal = fits.nonzero()
-    part = probe.inner_part(joints[leaves[leaf]], joints[goals[goal]])
-    fits[leaf, goal] = part >= THROUGH_BODY
+    fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[goals[goal]]) == 1
     distance = np.where(fits, far, np.inf)
     choice = _clear_choice(distance, joints[goals])
     suits = np.arange(len(goals)) == choice[:, None]

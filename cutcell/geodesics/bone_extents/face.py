@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import unicodedata
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ...rig import Skeleton
 from ...rig.deform_joints.names import words
 
 _FACE = (
@@ -15,6 +19,16 @@ PARTS = ("eye", "brow", "jaw", "mouth", "tongue", "teeth", "cheek")
 """The same inside longer words, as in `lefteyelid`."""
 LETTERS = "目眼瞳眉顎口唇歯舌耳鼻"
 """Japanese: eye, pupil, brow, jaw, mouth, lip, teeth, tongue, ear, nose."""
+
+
+def face_parts(skeleton: Skeleton) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Find the joints of faces, and of these the eyes, lids and brows, both of shape (j,).
+
+    What other joints hang on, such as a head named after a face, is none.
+    """
+    in_face = np.array([is_face_part(name) for name in skeleton.names])
+    in_face &= ~(skeleton.subtree & ~in_face & skeleton.deform).any(axis=1)
+    return in_face, in_face & np.array([is_eye_part(name) for name in skeleton.names])
 
 
 def is_face_part(name: str) -> bool:

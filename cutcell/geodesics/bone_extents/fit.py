@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from ...geometry.vectors import length, triangle_normal
 from ...graph import CutCellGraph
@@ -141,7 +142,8 @@ def _others(
     The face does not end the bone of a head.
     """
     end = np.where(leaf[:, None], bones.start, bones.end)
-    of_face = chains.in_face[bones.joint]
+    to_face = cdist(bones.end, chains.joints[chains.in_face]) < SAME_PLACE
+    of_face = chains.in_face[bones.joint] | to_face.any(axis=1)
     for joint in bones.joint[leaf]:
         ends_at_it = np.abs(bones.end - chains.joints[joint]).max(axis=1) < SAME_PLACE
         other = (bones.joint != joint) & ~ends_at_it
