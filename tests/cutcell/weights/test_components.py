@@ -67,7 +67,7 @@ def test_a_bone_in_another_component_counts_as_farther():
     np.testing.assert_allclose(
         cross_component_penalty(half, np.zeros_like(half, bool)), [[1, 1], [3, 1]]
     )
-    np.testing.assert_allclose(cross_component_penalty(containment[:1]), 1)
+    np.testing.assert_allclose(cross_component_penalty(containment[:1], np.zeros((1, 3), bool)), 1)
 
 
 def button(at):
@@ -102,7 +102,7 @@ def test_a_body_in_patches_has_no_accessories():
 
 
 def test_a_lone_component_has_no_penalty():
-    penalty = cross_component_penalty(np.array([[0.2, 0.0, 1.0]]))
+    penalty = cross_component_penalty(np.array([[0.2, 0.0, 1.0]]), np.zeros((1, 3), bool))
     np.testing.assert_array_equal(penalty, 1.0)
 
 
