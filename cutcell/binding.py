@@ -24,6 +24,7 @@ from .editing.corrections import Corrections
 from .editing.refine import RefineOptions, check_refinement, refine_weights
 from .errors import SkeletonError
 from .geodesics import BoneDistances, bone_distances
+from .geodesics.bone_extents.skins import method_per_character
 from .graph import CutCellGraph, build_graph
 from .graph.fingerprint import graph_fingerprint, require_same
 from .graph.lattice import Lattice
@@ -109,7 +110,8 @@ def bind(
         The mesh may be of any kind that `build_graph` takes. A rig's own weights are not used,
         except that joints without any stay without (`Skeleton.deform`).
     resolution : int, optional
-        R, 2 to 1024; the method's when left out.
+        R, 2 to 1024; the method's when left out. That counts along the largest character where
+        the file has several, side by side, so that each is bound as if it were alone.
     method : Method, "animation" or "paper"
         How weights are computed. `cutcell.ANIMATION` is made to animate with, `cutcell.PAPER` is
         the paper's method.
@@ -156,7 +158,9 @@ def bind(
         locked = [*locked, *locked_by(corrections)]
     refinement: RefineOptions = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
     _check(rig, method, refinement)
-    if graph is not None:
+    if graph is None and resolution is None:
+        method = method_per_character(rig, method)
+    elif graph is not None:
         require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
     if not is_compiled():
         progress("compile", 0.0)

@@ -15,6 +15,7 @@ from ..geodesics import (
     bone_distances,
     trace_path,
 )
+from ..geodesics.bone_extents.skins import method_per_character
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
 from ..graph import build_graph
@@ -194,6 +195,7 @@ def explain(
     corrections = Corrections() if corrections is None else corrections
     rig = corrected_rig(rig, corrections)
     if distances is None:
+        method = method if resolution else method_per_character(rig, method)
         graph = build_graph(rig.mesh, method=method, progress=progress)
         nearest, within = joints_measured(corrections, method)
         distances = bone_distances(
@@ -206,6 +208,8 @@ def explain(
             progress=progress,
         )
     else:
+        if resolution is None and distances.graph.lattice.resolution != method.resolution:
+            method = method_per_character(rig, method)
         expected = graph_fingerprint(rig.mesh, method)
         expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
         require_same("distances", distances.fingerprint, expected)

@@ -1,4 +1,4 @@
-"""Which joints belong together: those of one skin, and those of one character."""
+"""Joints that belong together: those of one skin, and those of one character."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from ...rig import Skeleton
+from ...method import MAX_RESOLUTION, Method
+from ...rig import Rig, Skeleton
+
+SIDE_BY_SIDE = 1.25
+"""Several characters are at least so much longer together than the largest of them."""
+MAX_REFINEMENT = 4
+"""Rays are as many as the square of the resolution, so characters far apart are bound coarser."""
 
 
 def share_a_skin(allowed: NDArray[np.bool_] | None, joints: int) -> NDArray[np.bool_]:
@@ -59,3 +65,20 @@ def characters(
                 axes,
             ),
         )
+
+
+def method_per_character(rig: Rig, method: Method) -> Method:
+    """Return a method whose resolution counts along the largest of several characters in a file.
+
+    Each is then bound as if it were alone. Characters share no joint.
+    """
+    if rig.allowed is None or method.falloff != "rig":
+        return method
+    joints = characters(rig.skeleton, share_a_skin(rig.allowed, len(rig.skeleton.joints)))
+    parts = [rig.mesh.vertices[rig.allowed[:, one].any(axis=1)] for one, _ in joints]
+    longest = max((np.ptp(part, axis=0).max() for part in parts if len(part)), default=0.0)
+    whole = np.ptp(rig.mesh.vertices, axis=0).max()
+    if not 0 < SIDE_BY_SIDE * longest < whole:
+        return method
+    resolution = round(min(whole / longest, MAX_REFINEMENT) * method.resolution)
+    return method.with_options(resolution=min(resolution, MAX_RESOLUTION))
