@@ -120,7 +120,7 @@ class Method:
     winding_threshold : float
         tau: what has at least this winding number is inside; more than 0 and less than 1.
     orient : bool
-        Whether faces that are inside out count as turned round.
+        Whether faces that are inside out are flipped first.
     samples : int
         N, points on each bone that distances start from, 1 to 1000.
     leaf : {"fit", "point", "extend"}, optional

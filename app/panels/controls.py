@@ -1,6 +1,7 @@
 """Controls shared by the sections of the sidebar."""
 
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -107,12 +108,15 @@ def when(function: Callable[..., Any], *parameters: Any) -> Any:
 
 
 def unique_names(names: Sequence[str]) -> list[str]:
-    """Return names to be shown, of which none comes twice: one that does gets its index added."""
+    """Return names to be shown, of which none comes twice: the second gets "(2)" added."""
     unique: dict[str, None] = {}
-    for index, name in enumerate(map(shown_name, names)):
-        while name in unique:
-            name = f"{name} ({index})"
-        unique[name] = None
+    numbers: Counter[str] = Counter()
+    for name in map(shown_name, names):
+        numbered = name
+        while numbered in unique:
+            numbers[name] += 1
+            numbered = f"{name} ({numbers[name] + 1})"
+        unique[numbered] = None
     return list(unique)
 
 

@@ -121,8 +121,8 @@ def _weighted_warnings(skeleton: Skeleton, weighted: NDArray[np.bool_]) -> list[
     if not weighted.any():
         return []
     return [
-        f"{_names(skeleton, weighted)} have weight in the file, but by what it stores do not "
-        "deform: new weights give them none"
+        f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
+        "not deforming: new weights give them none"
     ]
 
 

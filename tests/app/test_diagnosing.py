@@ -69,7 +69,7 @@ def test_what_is_bound_is_diagnosed(spoiled):
     assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
     assert summary(spoiled.state) == "1 error, 1 warning. Choose one to see it."
     assert "Vertices without weight" in texts(spoiled)
-    assert "Repair all 2" in texts(spoiled)
+    assert "Repair all 2 findings" in texts(spoiled)
     assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
 
 
@@ -194,7 +194,7 @@ def labels(session):
 def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypatch):
     state, before = spoiled.state, spoiled.state.rig
     look_at(spoiled, "unweighted-vertices")
-    assert {"Repair", "Repair all 2"} <= labels(spoiled).keys()
+    assert {"Repair", "Repair all 2 findings"} <= labels(spoiled).keys()
     monkeypatch.setitem(WEIGHTS, "unweighted-vertices", lambda rig, finding: rig.weights)
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.repair is not None)
@@ -202,7 +202,7 @@ def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypat
     assert state.repair.in_vain == {"unweighted-vertices"}
     look_at(spoiled, "unweighted-vertices")
     look_at(spoiled, "unweighted-vertices")
-    assert not {"Repair", "Repair all 2", "Undo repair"} & labels(spoiled).keys()
+    assert not {"Repair", "Repair all 2 findings", "Undo repair"} & labels(spoiled).keys()
     repair(spoiled, ["inverted-faces"])
     loop.run_until(lambda: state.rig is not before and state.diagnosis is not None)
     assert codes(spoiled) == ["unweighted-vertices"]
