@@ -220,7 +220,8 @@ def _repairs(session: Session) -> list[Any]:
     able = [finding for finding in able if finding.code not in _in_vain(state)]
     if len(able) > 1:
         codes = [finding.code for finding in able]
-        rows.append(button(f"Repair all {len(able)} findings", lambda: repair(session, codes), icon="build"))
+        label = f"Repair all {len(able)} findings"
+        rows.append(button(label, lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
     if state.repair.before is state.rig:

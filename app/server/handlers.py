@@ -33,8 +33,8 @@ MAX_SESSIONS_OF_CLIENT = MAX_SESSIONS // 2
 """Pages that one computer may have open: a class behind one address, but not the whole server."""
 
 FULL_OF_CLIENT = (
-    f"{MAX_SESSIONS_OF_CLIENT} pages of this server are open at your network address, which is "
-    "its limit. Close one, or come back later."
+    f"Your network address has its limit of {MAX_SESSIONS_OF_CLIENT} pages open. Close one, or "
+    "come back later."
 )
 
 FULL = (
