@@ -5,8 +5,6 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
-from cutcell.runtime.display import shown_name
-
 from ..commands.brush import clear_selection, invert_selection
 from ..commands.correct import keep_file_vertices
 from ..commands.moving import mirror_of
@@ -20,6 +18,7 @@ from .controls import (
     column,
     folded,
     has_weights,
+    joint_title,
     row,
     slider,
     switch,
@@ -102,4 +101,4 @@ def _summary(rig: Any, joint: int, mode: str) -> str:
         return "Select the vertices that other tools may paint. Ctrl subtracts."
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    return f"Paints weights of {shown_name(rig.skeleton.names[joint])}, the selected bone."
+    return f"Paints weights of {joint_title(rig, joint)}, the selected bone."

@@ -11,7 +11,6 @@ from cutcell.diagnosis import SEVERITIES, Finding
 from cutcell.diagnosis.leaks import moves_own_part
 from cutcell.editing.corrections import PartCorrection
 from cutcell.rig import Rig
-from cutcell.runtime.display import shown_name
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..commands.check import look_at, repair, take_back
@@ -19,7 +18,18 @@ from ..commands.correct import correct_part, keep_file_vertices, leave_out, lock
 from ..commands.session import Session
 from ..state import State
 from ..state.check import EXPORT
-from .controls import LINE, button, caption, column, has_weights, intro, section, text_line, when
+from .controls import (
+    LINE,
+    button,
+    caption,
+    column,
+    has_weights,
+    intro,
+    joint_title,
+    section,
+    text_line,
+    when,
+)
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -184,7 +194,7 @@ def _part_choices(session: Session, finding: Finding) -> list[pmui.Button]:
             continue
         vertices = np.flatnonzero(component == component[vertex]).tolist()
         act = partial(correct_part, session, vertices, part)
-        buttons.append(button(f"Rigid to {shown_name(names[joint])}", act, icon="link"))
+        buttons.append(button(f"Rigid to {joint_title(state.rig, joint)}", act, icon="link"))
     return buttons
 
 
@@ -208,7 +218,7 @@ def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Butt
 
 def _joints(rig: Rig, joints: list[int]) -> str:
     if len(joints) == 1:
-        return shown_name(rig.skeleton.names[joints[0]])
+        return joint_title(rig, joints[0])
     return f"these {len(joints)} joints"
 
 

@@ -9,7 +9,8 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from cutcell.runtime.display import printable, shown_name
+from cutcell.rig import Rig
+from cutcell.runtime.display import printable, short_names, shown_name
 
 from ..commands import pose
 from ..commands.session import Session
@@ -118,6 +119,11 @@ def unique_names(names: Sequence[str]) -> list[str]:
             numbered = f"{name} ({numbers[name] + 1})"
         unique[numbered] = None
     return list(unique)
+
+
+def joint_title(rig: Rig, joint: int) -> str:
+    """Return a joint's name as the page shows it."""
+    return short_names(rig.skeleton.names)[joint]
 
 
 def offer(select: pmui.Select, names: Sequence[str], index: int) -> None:

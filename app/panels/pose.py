@@ -7,7 +7,7 @@ import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
 from cutcell.io.materials.transfer import has_materials
-from cutcell.runtime.display import shown_name
+from cutcell.runtime.display import short_names
 
 from ..commands import pose as actions
 from ..commands.session import Session
@@ -24,6 +24,7 @@ from .controls import (
     column,
     follow,
     intro,
+    joint_title,
     offer,
     play_button,
     rest_button,
@@ -68,7 +69,7 @@ def _turning(session: Session) -> pmui.Column:
 def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    name = shown_name(rig.skeleton.names[joint])
+    name = joint_title(rig, joint)
     if brush:
         return f"Use the sliders to rotate {name}. The rings are hidden while painting."
     return f"Drag the rings or the sliders to rotate {name}."
@@ -218,9 +219,11 @@ def worst_rows(state: State) -> list[tuple[str, str, float]]:
     """Return the rows of the list of the worst turns."""
     turns = _worst(state)
     top = turns[0].mean if turns else 1.0
+    names = state.rig.skeleton.names if turns else ()
+    shorts = dict(zip(names, short_names(names), strict=True))
     return [
         (
-            f"{shown_name(one.name)} about {one.axis.upper()}",
+            f"{shorts[one.name]} about {one.axis.upper()}",
             f"{10 * np.sqrt(one.mean):.3g} mm",
             float(np.sqrt(one.mean / top)),
         )

@@ -4,6 +4,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.runtime.display import short_names
+
 from ..commands import structure as actions
 from ..commands.session import Session
 from .controls import GAP, button, caption, column, row, select_box, unique_names
@@ -19,23 +21,24 @@ def structure(session: Session) -> pmui.Column:
     remove = button(
         "Remove joint", lambda: actions.remove(session), icon="remove", margin=(4, 0, 4, 4)
     )
-    cache: dict[str, list[str]] = {"names": []}
+    cache: dict[str, str] = {}  # the joint of each title
 
     def update(*events: Any) -> None:
         if state.rig is None or state.joint >= len(state.rig.skeleton.names):
             return
         skeleton = state.rig.skeleton
         names = actions.may_hang_on(state.rig, state.joint)
-        titles, parent = unique_names(names), int(skeleton.parents[state.joint])
-        cache["names"] = names
+        shorts = dict(zip(skeleton.names, short_names(skeleton.names), strict=True))
+        titles = unique_names([shorts[name] for name in names])
+        parent = int(skeleton.parents[state.joint])
+        cache.clear()
+        cache.update(zip(titles, names, strict=True))
         value = titles[names.index(skeleton.names[parent])] if parent >= 0 else NOTHING
         on.param.update(options=[NOTHING, *titles], value=value)
 
     def chosen(event: Any) -> None:
-        titles = unique_names(cache["names"])
-        if event.new == NOTHING or event.new in titles:
-            parent = "" if event.new == NOTHING else cache["names"][titles.index(event.new)]
-            actions.hang_on(session, parent)
+        if event.new == NOTHING or event.new in cache:
+            actions.hang_on(session, cache.get(event.new, ""))
 
     on.param.watch(chosen, "value")
     state.param.watch(update, ["rig", "joint", "corrections"])
