@@ -25,6 +25,9 @@ from .weights import check_weights
 WEIGHT_CHECKS = (check_weights, check_leaks, check_far_parts, check_sweep)
 CHECKS = (check_mesh, check_joints, check_parts, *WEIGHT_CHECKS)
 
+RESOLUTION = 64
+"""R of the graph of a rig that is examined without distances."""
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
@@ -93,7 +96,7 @@ class Diagnosis:
 
 def diagnose(
     rig: Rig,
-    resolution: int = 64,
+    resolution: int | None = None,
     *,
     distances: BoneDistances | None = None,
     only_weights: bool = False,
@@ -105,8 +108,9 @@ def diagnose(
     ----------
     rig : Rig
         Its mesh, its skeleton, and its weights if it has any.
-    resolution : int
-        R, as of `build_graph`: thin parts are those of this lattice.
+    resolution : int, optional
+        R, as of `build_graph`: thin parts are those of this lattice. When left out, that of the
+        distances, else 64.
     distances : BoneDistances, optional
         Of this rig, such as those of a `Binding`; measured when left out.
     only_weights : bool
@@ -132,6 +136,8 @@ def diagnose(
     >>> for finding in cutcell.diagnose(rig).findings:  # doctest: +SKIP
     ...     print(finding.severity, finding.message)
     """
+    if resolution is None:
+        resolution = RESOLUTION if distances is None else distances.graph.lattice.resolution
     resolution = check_resolution(resolution)
     if distances is not None:
         expected = mesh_fingerprint(rig.mesh) | skeleton_fingerprint(rig.skeleton)
