@@ -115,7 +115,7 @@ def difference_colors(
     See `weight_colors`.
     """
     moved = np.abs(np.asarray(weights, np.float32) - np.asarray(other, np.float32)).sum(axis=1) / 2
-    legend = Legend("Difference to the file's weights", "error", "0 %", "100 %")
+    legend = Legend("Difference to the file's weights", "error", "0%", "100%")
     style = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
     return {**style, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
 

@@ -76,8 +76,8 @@ export function render({model}) {
     element("span", "share", percent(row.ours ?? row.file), made)
     const says = [row.name]
     if (row.control) { says.push("control") }
-    if (row.ours !== null) { says.push(`${percent(row.ours)} % of the skin`) }
-    if (row.file !== null) { says.push(`${percent(row.file)} % in the file`) }
+    if (row.ours !== null) { says.push(`${percent(row.ours)}% of the skin`) }
+    if (row.file !== null) { says.push(`${percent(row.file)}% in the file`) }
     if (row.locked) { says.push("locked") }
     made.setAttribute("aria-label", says.join(", "))
     bars.title = says.slice(1).join(", ")

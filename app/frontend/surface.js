@@ -59,6 +59,6 @@ export function valueAt(actor, index) {
   const value = (values || actor.values)?.[index]
   if (value === undefined || Number.isNaN(value)) { return null }
   if (names?.length) { return text + names[value] }
-  if (percent) { return `${text}${Math.round(100 * value)}\u00a0%` }
+  if (percent) { return `${text}${Math.round(100 * value)}%` }
   return text + (Number.isInteger(value) ? value * unit : Number((value * unit).toPrecision(3)))
 }

@@ -16,7 +16,7 @@ export function weightText(weight) {
 
 export function percentText(part) {
   const percent = 100 * part
-  if (percent === 0) { return "0 %" }
-  if (percent < 0.05) { return "<0.1 %" }
-  return `${percent.toFixed(percent < 9.95 ? 1 : 0)} %`
+  if (percent === 0) { return "0%" }
+  if (percent < 0.05) { return "<0.1%" }
+  return `${percent.toFixed(percent < 9.95 ? 1 : 0)}%`
 }

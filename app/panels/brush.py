@@ -47,7 +47,7 @@ def brush(session: Session) -> pmui.Column:
         caption(when(_summary, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
             state.param.brush_radius, "Radius (% of size)", step=0.005,
-            end=MAX_RADIUS, format="0.0 %",
+            end=MAX_RADIUS, format="0.0%",
         ),
         slider(
             state.param.brush_strength, "Strength", step=0.05,

@@ -124,5 +124,5 @@ def summary(state: State) -> str:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
         difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
-        text += f", {100 * difference:.0f} % different from the file"
+        text += f", {100 * difference:.0f}% different from the file"
     return text + "."

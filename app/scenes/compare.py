@@ -124,7 +124,7 @@ def looks_of(
             name: memo(f"apart {name}", (table, base), partial(_sum_of_differences, table, base))
             for name, table in computed.items()
         }
-        return styles, Legend("Difference of the weights", "error", "0 %", "100 %")
+        return styles, Legend("Difference of the weights", "error", "0%", "100%")
     which = joint if field == "bone" else None
     styles, legend = {}, None
     for name, table in computed.items():

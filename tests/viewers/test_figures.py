@@ -106,7 +106,7 @@ def test_numbers_of_a_legend_are_read():
         0, 0.55, "in the file's units"
     )  # fmt: skip
     assert _range(Legend("", "difference", "−1", "+1")) == (-1, 1, "")
-    assert _range(Legend("", "error", "0 %", "100 %")) == (0, 100, "%")
+    assert _range(Legend("", "error", "0%", "100%")) == (0, 100, "%")
     assert _range(Legend("", "error", "few", "many")) is None
     assert _range(Legend("", "error", "1", "1")) is None
 

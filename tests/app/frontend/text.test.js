@@ -11,8 +11,8 @@ test("lengths have three significant digits and no exponent", () => {
 
 test("weights and parts are rounded alike", () => {
   assert.equal(weightText(0.125), "0.13")
-  assert.equal(percentText(0), "0 %")
-  assert.equal(percentText(1e-5), "<0.1 %")
-  assert.equal(percentText(0.034), "3.4 %")
-  assert.equal(percentText(0.5), "50 %")
+  assert.equal(percentText(0), "0%")
+  assert.equal(percentText(1e-5), "<0.1%")
+  assert.equal(percentText(0.034), "3.4%")
+  assert.equal(percentText(0.5), "50%")
 })
