@@ -25,7 +25,7 @@ from cutcell.networks import (
 from cutcell.networks.augmentation import drawn
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
-STEPS = {"rignet": (200, 1e-2), "unirig": (500, 5e-3), "puppeteer": (250, 1e-2)}
+STEPS = {"rignet": (200, 1e-2), "unirig": (800, 3e-3), "puppeteer": (250, 1e-2)}
 """How many a head needs to learn one character by heart, and the highest learning rate."""
 
 
