@@ -194,8 +194,10 @@ def explain(
     vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
     corrections = Corrections() if corrections is None else corrections
     rig = corrected_rig(rig, corrections)
+    measured_at = None if distances is None else distances.graph.lattice.resolution
+    if resolution is None and measured_at != method.resolution:  # as `bind` does
+        method = method_per_character(rig, method)
     if distances is None:
-        method = method if resolution else method_per_character(rig, method)
         graph = build_graph(rig.mesh, method=method, progress=progress)
         nearest, within = joints_measured(corrections, method)
         distances = bone_distances(
@@ -208,8 +210,6 @@ def explain(
             progress=progress,
         )
     else:
-        if resolution is None and distances.graph.lattice.resolution != method.resolution:
-            method = method_per_character(rig, method)
         expected = graph_fingerprint(rig.mesh, method)
         expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
         require_same("distances", distances.fingerprint, expected)

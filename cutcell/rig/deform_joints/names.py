@@ -88,14 +88,14 @@ def is_of_mmd(name: str) -> bool:
 
 def is_mmd_control(name: str) -> bool:
     """Return whether a name is that of a control in a rig of MikuMikuDance that was translated."""
-    found = set(words(name))
-    return bool(found - MMD_TIPS) and found <= MMD_CONTROL_WORDS | MMD_TIPS
+    parts = set(words(name))
+    return bool(parts - MMD_TIPS) and parts <= MMD_CONTROL_WORDS | MMD_TIPS
 
 
 def is_mmd_tip(name: str) -> bool:
     """Return whether a name is that of a tip in a rig of MikuMikuDance that was translated."""
-    found = [word for word in words(name) if word not in SIDES]
-    return bool(found) and found[-1] in MMD_TIPS and MMD_NO_TIPS.isdisjoint(found)
+    parts = [word for word in words(name) if word not in SIDES]
+    return bool(parts) and parts[-1] in MMD_TIPS and MMD_NO_TIPS.isdisjoint(parts)
 
 
 def is_end_marker(name: str) -> bool:
