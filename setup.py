@@ -9,7 +9,12 @@ from pathlib import Path
 
 from setuptools import find_packages, setup
 
-FOLDERS = {"cutcell_app": "app", "cutcell_assets": "assets", "cutcell_viewers": "viewers"}
+FOLDERS = {
+    "cutcell_app": "app",
+    "cutcell_assets": "assets",
+    "cutcell_lab": "lab",
+    "cutcell_viewers": "viewers",
+}
 FILES = "https://raw.githubusercontent.com/cutcell/cutcell/main/"
 PAGES = "https://github.com/cutcell/cutcell/blob/main/"
 

@@ -9,9 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from cutcell.cli.console import for_people
-from cutcell.cli.networks import offer_networks
-from cutcell.cli.options import Networks
 from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell_lab.cli.networks import Networks, offer_networks
 
 from .render_command import EPILOG, render
 

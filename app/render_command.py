@@ -8,11 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from cutcell.cli.console import for_people, print_line, print_warnings, progress_bars
-from cutcell.cli.networks import offer_networks
 from cutcell.cli.options import (
     FILES,
     METHOD_OPTIONS,
-    Networks,
     RigFile,
     SkeletonFile,
     chosen_method,
@@ -20,6 +18,7 @@ from cutcell.cli.options import (
     with_options,
 )
 from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell_lab.cli.networks import Networks, offer_networks
 
 from .render_flags import CHOICES, PICTURE, SETTINGS, WHAT
 

@@ -16,8 +16,8 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.cli.console import print_warnings
-from cutcell.dataset import load_audit
 from cutcell.weights.warm_up import is_compiled, warm_up
+from cutcell_lab.dataset import load_audit
 from cutcell_viewers.description import Actor
 
 from .files.upload_cache import UPLOADS

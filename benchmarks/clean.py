@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.baselines import METHODS
 from cutcell.diagnosis import cleaning
 from cutcell.metrics import deformation_error, find_gaps, vertex_shares, weight_l1
 from cutcell.rig import Rig
+from cutcell_lab.baselines import METHODS
 
 from .document import fill
 from .rigs import SHARED

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.baselines.methods import known_options
 from cutcell.graph import build_graph
 from cutcell.metrics import crosstalk, find_gaps
+from cutcell_lab.baselines import METHODS, BaselineBinding
+from cutcell_lab.baselines.methods import known_options
 
 from .document import fill
 from .rigs import ROOT

@@ -27,18 +27,18 @@ from typing import Any
 import numpy as np
 import psutil
 from scipy.spatial import cKDTree
+from tests.cutcell_lab.dataset.test_audit import planted
 
 import cutcell
-from cutcell.dataset.audit.auditing import THRESHOLD, compare, readings
-from cutcell.dataset.audit.auditing import audit as audit_of
-from cutcell.dataset.audit.chamfer import Block
-from cutcell.dataset.audit.likeness import features_of
-from cutcell.dataset.audit.points import Normalised, normalised
-from cutcell.dataset.bind.cluster import connected
-from cutcell.dataset.read.sources import read_source
-from cutcell.dataset.read.store import MANIFEST, read_table
 from cutcell_assets.generate import KINDS, generate
-from tests.cutcell.dataset.test_audit import planted
+from cutcell_lab.dataset.audit.auditing import THRESHOLD, compare, readings
+from cutcell_lab.dataset.audit.auditing import audit as audit_of
+from cutcell_lab.dataset.audit.chamfer import Block
+from cutcell_lab.dataset.audit.likeness import features_of
+from cutcell_lab.dataset.audit.points import Normalised, normalised
+from cutcell_lab.dataset.bind.cluster import connected
+from cutcell_lab.dataset.read.sources import read_source
+from cutcell_lab.dataset.read.store import MANIFEST, read_table
 
 from .document import fill
 from .rigs import ROOT, SHARED

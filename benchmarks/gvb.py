@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.baselines import METHODS
-from cutcell.baselines.body import Body
-from cutcell.baselines.compare import Comparison, compare
-from cutcell.baselines.volumes.voxels import voxelize
 from cutcell.graph import build_graph
+from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.body import Body
+from cutcell_lab.baselines.compare import Comparison, compare
+from cutcell_lab.baselines.volumes.voxels import voxelize
 
 from .document import fill
 from .figures import METHOD_COLORS, save, styled

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 import cutcell
-from cutcell.baselines.body import Body
-from cutcell.baselines.cages.cage_methods import harmonic
-from cutcell.baselines.volumes.voxel_binding import voxel_distances
 from cutcell.rig import Rig
+from cutcell_lab.baselines.body import Body
+from cutcell_lab.baselines.cages.cage_methods import harmonic
+from cutcell_lab.baselines.volumes.voxel_binding import voxel_distances
 
 from .document import fill
 from .rigs import ROOT

@@ -27,10 +27,10 @@ import torch
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.networks import Recipe, Sample, Samples, predict, train
-from cutcell.networks.priors import cache_folder
 from cutcell.runtime.writing import write_all
 from cutcell_assets.generate import KINDS, Kind, generate
+from cutcell_lab.networks import Recipe, Sample, Samples, predict, train
+from cutcell_lab.networks.priors import cache_folder
 
 from .document import fill
 from .network_scores import Scores, groups, means, scores

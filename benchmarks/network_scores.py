@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cutcell.metrics import deformation_error, precision_recall, weight_l1
 from cutcell.metrics.deformation import longest_side
-from cutcell.networks import Sample
 from cutcell.rig import Skeleton, TriangleMesh
+from cutcell_lab.networks import Sample
 
 SAME_MAKER = ("quaternius_", "quat_", "deok_dino_quant", "packt_woman", "m2m_eagle")
 """Characters of rigs and wild by the maker of train, surely or probably (SOURCES.md)."""

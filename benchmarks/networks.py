@@ -24,9 +24,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from cutcell.networks import HEADS, PRIORS, Recipe, Sample, Samples, predict, train
-from cutcell.networks.priors import cache_folder
 from cutcell.runtime.writing import write_all
+from cutcell_lab.networks import HEADS, PRIORS, Recipe, Sample, Samples, predict, train
+from cutcell_lab.networks.priors import cache_folder
 
 from .document import fill
 from .network_figure import draw

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cutcell.baselines import METHODS, BaselineBinding
+from cutcell_lab.baselines import METHODS, BaselineBinding
 
 from .document import fill
 from .quality import LIMIT, warm

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.baselines import METHODS
 from cutcell.geodesics.fallback import UNREACHED
 from cutcell.metrics import TURNED, deformation_error
+from cutcell_lab.baselines import METHODS
 
 from . import graph_construction, gvb, optimisation, runtime
 from .document import fill

@@ -24,12 +24,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import cutcell
-from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.baselines.compare import Comparison, compare, comparison_markdown
-from cutcell.baselines.compare.plot import plot_comparison
 from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Rig
 from cutcell.runtime.writing import write_all
+from cutcell_lab.baselines import METHODS, BaselineBinding
+from cutcell_lab.baselines.compare import Comparison, compare, comparison_markdown
+from cutcell_lab.baselines.compare.plot import plot_comparison
 
 from .document import fill
 from .rigs import ROOT, SHARED

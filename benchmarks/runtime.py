@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cutcell.baselines import METHODS
+from cutcell_lab.baselines import METHODS
 
 from .document import fill
 from .figures import STAGE_COLORS, save, styled

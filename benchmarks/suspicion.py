@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.baselines import METHODS
 from cutcell.errors import CutcellError
+from cutcell_lab.baselines import METHODS
 
 from .diagnosis import wild_paths
 from .document import fill

@@ -1,5 +1,3 @@
-from . import baselines as baselines
-from . import dataset as dataset
 from . import diagnosis as diagnosis
 from . import editing as editing
 from . import errors as errors
@@ -12,7 +10,6 @@ from . import pose as pose
 from . import rig as rig
 from . import templates as templates
 from . import weights as weights
-from .baselines.compare import compare as compare
 from .binding import Binding as Binding
 from .binding import bind as bind
 from .diagnosis import Cleaned as Cleaned

@@ -76,6 +76,6 @@ install || fail "pip could not install cutcell[$extra]; its own message is above
 It needs a way to a Python package index; once that is there, run make again."
 # mypy does not follow the names that setup.py gives to folders.
 mkdir -p "$venv/types"
-for folder in app assets viewers; do ln -sfn "../../$folder" "$venv/types/cutcell_$folder"; done
+for folder in app assets lab viewers; do ln -sfn "../../$folder" "$venv/types/cutcell_$folder"; done
 touch "$venv/.app"
 if [ "$extra" = test ]; then touch "$venv/.test"; fi

@@ -23,10 +23,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import cutcell
-from cutcell.baselines.compare import compare
-from cutcell.baselines.compare.plot import plot_comparison
+from cutcell_lab.baselines.compare import compare
+from cutcell_lab.baselines.compare.plot import plot_comparison
 from cutcell_app.files.table_export import save_numbers
-from tests.cutcell.baselines.test_compare import character
+from tests.cutcell_lab.baselines.test_compare import character
 from tests.viewers.arm import arm_rig
 from cutcell_viewers import film
 from cutcell_viewers.weights_scene import weights_scene

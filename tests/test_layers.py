@@ -1,4 +1,4 @@
-"""Imports follow the layers app -> viewers -> cutcell, and those inside the core."""
+"""Imports follow the layers app -> lab, viewers -> cutcell, and those inside the core."""
 
 import ast
 import json
@@ -24,22 +24,26 @@ HEAVY = {
     "trimesh",
     "vtk",
 }
-FOLDERS = {"cutcell": "cutcell", "cutcell_viewers": "viewers", "cutcell_app": "app"}
+FOLDERS = {
+    "cutcell": "cutcell",
+    "cutcell_lab": "lab",
+    "cutcell_viewers": "viewers",
+    "cutcell_app": "app",
+}
 """Where the packages lie."""
 PAGE = {"bokeh", "cutcell_app", "panel", "panel_material_ui"}
 PICTURES = {"cutcell_viewers", "pyvista", "vtk", "vtkmodules"}
 IMPORT_SECONDS = 0.3
 TORCH = [
     path.relative_to(ROOT).as_posix()
-    for path in sorted((ROOT / "cutcell").rglob("*.py"))
+    for path in sorted((ROOT / "lab").rglob("*.py"))
     if re.search(r"^(import|from) torch\b", path.read_text(encoding="utf-8"), re.MULTILINE)
 ]
 """Files that import torch at once."""
 # Each package of the core uses only those before it.
 ORDER = (
     "errors", "runtime", "geometry", "rig", "method", "isolated", "io", "graph", "geodesics",
-    "weights", "editing", "binding", "pose", "templates", "metrics", "baselines", "diagnosis",
-    "dataset", "networks", "cli", "__main__",
+    "weights", "editing", "binding", "pose", "templates", "metrics", "diagnosis", "cli", "__main__",
 )  # fmt: skip
 MAX_ROOT_ENTRIES = 24
 MAX_FILES = 15
@@ -83,8 +87,8 @@ def test_importing_the_core_or_its_command_brings_nothing_heavy(module):
 
 @pytest.mark.slow
 def test_torch_is_imported_by_what_needs_it_alone():
-    assert "torch" not in loaded_by(modules_of("cutcell"))
-    wrong = [name for name in TORCH if not name.startswith("cutcell/networks/")]
+    assert "torch" not in loaded_by([*modules_of("cutcell"), *modules_of("cutcell_lab")])
+    wrong = [name for name in TORCH if not name.startswith("lab/networks/")]
     assert wrong == []
 
 
@@ -99,8 +103,13 @@ def test_importing_the_core_is_quick():
 
 @pytest.mark.slow
 def test_the_core_knows_no_screen_and_no_server():
-    above = loaded_by(modules_of("cutcell")) & (PAGE | PICTURES)
-    assert above == {"cutcell_app"}, "its commands alone, which add themselves to the command line"
+    above = loaded_by(modules_of("cutcell")) & (PAGE | PICTURES | {"cutcell_lab"})
+    assert above == {"cutcell_app", "cutcell_lab"}, "their commands add themselves"
+
+
+@pytest.mark.slow
+def test_the_laboratory_knows_no_screen_and_no_server():
+    assert loaded_by(modules_of("cutcell_lab")) & (PAGE | PICTURES) <= {"cutcell_app"}
 
 
 @pytest.mark.slow
@@ -111,16 +120,17 @@ def test_the_viewers_know_no_server():
 @pytest.mark.parametrize(
     ("package", "forbidden"),
     [
-        ("cutcell", {"cutcell_viewers", "cutcell_app", "cutcell_assets"}),
-        ("cutcell_viewers", {"cutcell_app"}),
+        ("cutcell", {"cutcell_lab", "cutcell_viewers", "cutcell_app", "cutcell_assets"}),
+        ("cutcell_lab", {"cutcell_viewers", "cutcell_app"}),
+        ("cutcell_viewers", {"cutcell_lab", "cutcell_app"}),
     ],
 )
 def test_no_import_anywhere_points_upwards(package, forbidden):
-    """Imports inside functions count as well."""
+    """Imports inside functions count as well, and names of modules in strings."""
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
         for path in sorted((ROOT / FOLDERS[package]).rglob("*.py"))
-        for name, line in imports_of(path)
+        for name, line in [*imports_of(path), *modules_in_strings(path)]
         if name.partition(".")[0] in forbidden
     ]
     assert wrong == []
@@ -197,6 +207,26 @@ def imports_of(path: Path) -> list[tuple[str, int]]:
                 name = f"{base}.{alias.name}"
                 imports.append((name if is_module(name) else base, node.lineno))
     return imports
+
+
+def modules_in_strings(path: Path) -> list[tuple[str, int]]:
+    """Names of modules that a file may import by `import_module`, or in a subprocess."""
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    texts = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}  # docstrings
+    return [
+        (name, node.lineno)
+        for node in nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in texts
+        for name in re.findall(r"\bcutcell_\w+(?:\.\w+)*", node.value)
+    ]
+
+
+def test_modules_in_strings_are_seen(tmp_path):
+    source = (
+        '"""See cutcell_app."""\nimport_module("cutcell_app.x")\nrun("from cutcell_lab import y")'
+    )
+    (tmp_path / "a.py").write_text(source)
+    assert modules_in_strings(tmp_path / "a.py") == [("cutcell_app.x", 2), ("cutcell_lab", 3)]
 
 
 def is_module(name: str) -> bool:

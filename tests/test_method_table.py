@@ -16,7 +16,7 @@ PUBLIC = (
     "cutcell.geodesics",
     "cutcell.metrics",
     "cutcell.pose",
-    "cutcell.baselines.methods",
+    "cutcell_lab.baselines.methods",
 )
 PAPER = ("algorithm 1", "algorithm 2", "equation 1", "section 4.3", "section 4.3.1")
 

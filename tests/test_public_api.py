@@ -12,7 +12,11 @@ import pytest
 import cutcell
 from tests.conftest import ROOT
 
-PACKAGES = ["io", "graph", "geodesics", "weights", "editing", "pose", "metrics", "baselines"]
+PACKAGES = [
+    *(f"cutcell.{name}" for name in ("io", "graph", "geodesics", "weights", "editing", "pose")),
+    "cutcell.metrics",
+    "cutcell_lab.baselines",
+]
 ROOT_FUNCTIONS = sorted(
     name
     for name in cutcell.__all__
@@ -27,8 +31,8 @@ FUNCTIONS = sorted(
     {
         (package, name)
         for package in PACKAGES
-        for name in import_module(f"cutcell.{package}").__all__
-        if inspect.isfunction(getattr(import_module(f"cutcell.{package}"), name))
+        for name in import_module(package).__all__
+        if inspect.isfunction(getattr(import_module(package), name))
     }
 )
 
@@ -78,7 +82,7 @@ def test_every_parameter_is_spoken_of():
     """One by one in a section, or, where one sentence says all, in that sentence."""
     undescribed = {}
     for package, name in FUNCTIONS:
-        function = getattr(import_module(f"cutcell.{package}"), name)
+        function = getattr(import_module(package), name)
         parameters = set(inspect.signature(function).parameters)
         text = sections(function)
         if "Parameters" in text:
@@ -91,7 +95,7 @@ def test_every_parameter_is_spoken_of():
 def test_every_parameter_and_result_has_a_type():
     untyped = {}
     for package, name in FUNCTIONS:
-        signature = inspect.signature(getattr(import_module(f"cutcell.{package}"), name))
+        signature = inspect.signature(getattr(import_module(package), name))
         types = {p.name: p.annotation for p in signature.parameters.values()}
         types["return"] = signature.return_annotation
         untyped[package, name] = [key for key, kind in types.items() if kind is signature.empty]

@@ -17,7 +17,7 @@ from tests.signals import reset_signals
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parent.parent
-SOURCES = ("app", "assets", "cutcell", "viewers")
+SOURCES = ("app", "assets", "cutcell", "lab", "viewers")
 FILES = ("LICENSE", "NOTICE", "README.md", "pyproject.toml", "setup.py")
 TRAP = 'raise RuntimeError("imported from the working directory")\n'
 START_SECONDS = 120
@@ -43,7 +43,7 @@ def installed(tmp_path_factory) -> Path:
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
     """Stand in a folder with files that are called like packages."""
-    for name in ("app", "viewers", "assets"):
+    for name in ("app", "lab", "viewers", "assets"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "__init__.py").write_text(TRAP)
     for name in ("numba", "panel", "multiprocessing"):

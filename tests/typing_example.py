@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.baselines.compare import comparison_markdown
+import cutcell_lab
+from cutcell_lab.baselines.compare import comparison_markdown
 
 
 def how() -> list[cutcell.Method]:
@@ -115,9 +116,9 @@ def move(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def compared(rig: cutcell.Rig) -> str:
-    found = cutcell.baselines.METHODS["bone_heat"](rig)
-    assert_type(found, cutcell.baselines.BaselineBinding)
-    comparison = cutcell.compare([rig], ["cutcell_rig", "euclidean"])
+    found = cutcell_lab.baselines.METHODS["bone_heat"](rig)
+    assert_type(found, cutcell_lab.baselines.BaselineBinding)
+    comparison = cutcell_lab.compare([rig], ["cutcell_rig", "euclidean"])
     return comparison_markdown(comparison)
 
 
@@ -138,7 +139,7 @@ def careful(path: Path) -> str:
 
 
 MODULES = (
-    cutcell.dataset,
+    cutcell_lab.dataset,
     cutcell.diagnosis,
     cutcell.errors,
     cutcell.graph,

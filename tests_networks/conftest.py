@@ -7,7 +7,7 @@ import pytest
 import torch
 
 import cutcell
-from cutcell.networks import Sample, sample_rig
+from cutcell_lab.networks import Sample, sample_rig
 
 ROOT = Path(__file__).resolve().parent.parent
 POINTS = 96

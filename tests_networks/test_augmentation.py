@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cutcell.networks import Sample
-from cutcell.networks.augmentation import (
+from cutcell_lab.networks import Sample
+from cutcell_lab.networks.augmentation import (
     components,
     drawn,
     posed,
     surface_shares,
     without_joints,
 )
-from cutcell.networks.samples import KNOWN
+from cutcell_lab.networks.samples import KNOWN
 
 SEEDS = range(25)
 

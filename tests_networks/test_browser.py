@@ -3,8 +3,8 @@
 import pytest
 from playwright.sync_api import expect, sync_playwright
 
-from cutcell.networks import Recipe, train
 from cutcell_assets import demo_path
+from cutcell_lab.networks import Recipe, train
 from tests.app.browser import Visit, served
 from tests.app.conftest import LIGHT
 from tests.conftest import chromium  # noqa: F401 - a fixture

@@ -10,8 +10,8 @@ from benchmarks import network_data
 from benchmarks.network_scores import dropped, groups, means, scores
 from benchmarks.networks import Run, main
 from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
-from cutcell.networks import sample_rig
 from cutcell_assets.generate import generate
+from cutcell_lab.networks import sample_rig
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from cutcell.errors import ParameterError
-from cutcell.networks import HEADS, collate, create_network, predict
+from cutcell_lab.networks import HEADS, collate, create_network, predict
 
 
 def stirred(head: str, seed: int = 0) -> torch.nn.Module:
@@ -127,7 +127,7 @@ def test_every_parameter_has_a_gradient(head, two):
 
 
 def test_gradients_are_those_of_differences():
-    from cutcell.networks.heads.layers import weight_loss
+    from cutcell_lab.networks.heads.layers import weight_loss
 
     batch, logits = small_batch()
     torch.autograd.gradcheck(
@@ -155,7 +155,7 @@ def small_batch():
 
 
 def test_the_loss_of_the_truth_is_its_entropy_alone():
-    from cutcell.networks.heads.layers import weight_loss
+    from cutcell_lab.networks.heads.layers import weight_loss
 
     batch, _ = small_batch()
     entropy = -(batch.target * batch.target.clamp(min=1e-9).log()).sum(2).mean()

@@ -6,8 +6,8 @@ import pytest
 import torch
 from torch import nn
 
-from cutcell.networks import HEADS, SIZES, create_network, parameter_count
-from cutcell.networks.heads.heads import MADE
+from cutcell_lab.networks import HEADS, SIZES, create_network, parameter_count
+from cutcell_lab.networks.heads.heads import MADE
 
 
 def made(head: str, size: str) -> nn.Module:

@@ -11,14 +11,14 @@ import torch
 from typer.testing import CliRunner
 
 import cutcell
-from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.cli.app import app
 from cutcell.errors import Cancelled, FileError, TooLargeError, WeightsError
 from cutcell.isolated.run import stoppable
-from cutcell.networks import Recipe, load_network, predict, train, trained_networks
-from cutcell.networks.priors import PRIORS
-from cutcell.networks.samples import deal_rig
 from cutcell.runtime import memory
+from cutcell_lab.baselines import METHODS, BaselineBinding
+from cutcell_lab.networks import Recipe, load_network, predict, train, trained_networks
+from cutcell_lab.networks.priors import PRIORS
+from cutcell_lab.networks.samples import deal_rig
 from tests.bars import bar
 
 RECIPE = Recipe("unirig", prior="bind", points=32, resolution=16)
@@ -177,7 +177,7 @@ def test_it_stops_when_nobody_wants_it(methods, rig):
 
 
 def test_commands_compare_them(runs, monkeypatch):
-    monkeypatch.setattr("cutcell.baselines.METHODS", dict(METHODS))
+    monkeypatch.setattr("cutcell_lab.baselines.METHODS", dict(METHODS))
     biped = Path(__file__).resolve().parent.parent / "assets" / "rabbit.glb"
     words = ["compare", str(biped), "--networks", str(runs), "--json", "--quiet"]
     done = CliRunner().invoke(app, [*words, "--methods", "euclidean,unirig-bind-tiny-0"])

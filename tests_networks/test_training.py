@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
-from cutcell.networks import (
+from cutcell_lab.networks import (
     HEADS,
     Recipe,
     Samples,
@@ -22,7 +22,7 @@ from cutcell.networks import (
     predict,
     train,
 )
-from cutcell.networks.augmentation import drawn
+from cutcell_lab.networks.augmentation import drawn
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 STEPS = {"rignet": (200, 1e-2), "unirig": (800, 3e-3), "puppeteer": (250, 1e-2)}

@@ -6,8 +6,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from cutcell.baselines import METHODS
-from cutcell.baselines.methods import known_options
 from cutcell.errors import CutcellError
 from cutcell.isolated.run import stoppable
 from cutcell.metrics import (
@@ -19,6 +17,8 @@ from cutcell.metrics import (
 )
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
+from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.methods import known_options
 
 from ..jobs.jobs import COMPARING, WAITING
 from ..jobs.messages import error_text, visible_text

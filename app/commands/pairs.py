@@ -4,12 +4,12 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from cutcell.dataset import save_verdicts
-from cutcell.dataset.audit.audit_files import read_verdicts
-from cutcell.dataset.read.sources import read_source
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
+from cutcell_lab.dataset import save_verdicts
+from cutcell_lab.dataset.audit.audit_files import read_verdicts
+from cutcell_lab.dataset.read.sources import read_source
 
 from ..state.pairs import Beside, OpenedAudit
 from .session import Session

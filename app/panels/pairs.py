@@ -5,8 +5,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.dataset.audit.duplicates import DIFFERENT, DUPLICATE
 from cutcell.runtime.display import shown_name
+from cutcell_lab.dataset.audit.duplicates import DIFFERENT, DUPLICATE
 
 from ..commands import pairs as actions
 from ..commands.session import Session

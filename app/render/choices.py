@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cutcell import ANIMATION, Method
-from cutcell.baselines import METHODS
 from cutcell.errors import ParameterError
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
+from cutcell_lab.baselines import METHODS
 
 from ..scenes.common import first_joint
 from ..scenes.sweep import SWEEPS, has_cut
@@ -53,7 +53,7 @@ class Choices:
     error : bool
         Colour by the error against the file's own weights.
     methods : sequence of str
-        Side by side on the panel "compare": names in `cutcell.baselines.METHODS`, or "now".
+        Side by side on the panel "compare": names in `cutcell_lab.baselines.METHODS`, or "now".
     settings : mapping
         Other choices of the page, by the names that its address has for them, such as
         `{"cut_axis": "z", "mesh_edges": True}`; `render.options.settings_of` makes them.

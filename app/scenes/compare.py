@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.baselines import METHODS
 from cutcell.runtime.display import short_names
+from cutcell_lab.baselines import METHODS
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
 from cutcell_viewers.skin import skin_of_weights

@@ -11,9 +11,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from cutcell.baselines.body import Body
-from cutcell.baselines.volumes.voxel_binding import voxels_of_bone
-from cutcell.baselines.volumes.voxels import PAD, Voxels, voxelize
 from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances, Bones, shortest_path
 from cutcell.geodesics.distances import distances_from
@@ -24,6 +21,9 @@ from cutcell.method import Method
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress
+from cutcell_lab.baselines.body import Body
+from cutcell_lab.baselines.volumes.voxel_binding import voxels_of_bone
+from cutcell_lab.baselines.volumes.voxels import PAD, Voxels, voxelize
 
 from ..state.distance import CONVERGED, MEASURES, RESOLUTIONS, Measure
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import param
 
-from cutcell.baselines import METHODS
+from cutcell_lab.baselines import METHODS
 
 NOW = "now"
 """Stands among the methods for what the page computed, as it is set."""

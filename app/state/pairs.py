@@ -10,8 +10,8 @@ from typing import Any
 
 import param
 
-from cutcell.dataset import Audit, Pair
 from cutcell.rig import Rig
+from cutcell_lab.dataset import Audit, Pair
 
 TIERS = ("all", "twin", "variant", "near", "posed", "overruled")
 

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from cutcell.cli.console import for_people, print_json, print_table
-from cutcell.cli.dataset import counting, dataset
 from cutcell.cli.options import Json, Quiet
+from cutcell_lab.cli.dataset import counting, dataset
 
 EPILOG = """Examples:
 

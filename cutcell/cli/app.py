@@ -14,18 +14,7 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from . import (
-    bind,
-    clean,
-    compare,
-    dataset,
-    dataset_audit,
-    diagnose,
-    explain,
-    graph,
-    joints,
-    networks,
-)
+from . import bind, clean, diagnose, explain, graph, joints
 from .console import exit_by_output, print_line
 
 app = typer.Typer(
@@ -64,12 +53,9 @@ def cutcell(
     """
 
 
-for module in (bind, clean, graph, compare, diagnose, explain, joints):
+for module in (bind, clean, graph, diagnose, explain, joints):
     command = module.__name__.rpartition(".")[2]
     app.command(epilog=module.EPILOG)(getattr(module, command))
-dataset.dataset.command(epilog=dataset_audit.EPILOG)(dataset_audit.audit)
-app.add_typer(dataset.dataset, name="dataset")
-app.add_typer(networks.networks, name="networks")
 
 for above in entry_points(group="cutcell.commands"):
     above.load()(app)

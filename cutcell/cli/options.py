@@ -45,15 +45,6 @@ Accessories = Annotated[
         rich_help_panel=FILES,
     ),
 ]
-Networks = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--networks",
-        metavar="FOLDER",
-        help="Trained networks to compare with: a folder of `cutcell networks train`, or a folder"
-        " of such folders (needs cutcell[networks]). May be given several times.",
-    ),
-]
 TemplateName = Annotated[
     str | None,
     typer.Option(

@@ -1,5 +1,7 @@
 """Read a job, do it, write its result: arrays by name, or in `failed` why there are none.
 
+Where a library is not installed, `missing` is its name.
+
 The result also tells the `seconds` that the task took, the process's start left out.
 """
 
@@ -13,45 +15,18 @@ from time import perf_counter
 
 import numpy as np
 
-TASKS = {
-    "tetgen": "tetrahedra:by_tetgen",
-    "tetwild": "tetrahedra:by_tetwild",
-    "bbw": "smooth:bounded",
-    "biharmonic": "smooth:unbounded",
-    "quasi_harmonic": "quasi_harmonic:quasi_harmonic",
-    "cage": "cage:make_cage",
-    "draco": "draco:decode",
-    "fbx": "fbx:read",
-    "usd": "usd:read",
-    "network_recipes": ".networks.worker:recipes",
-    "network_weights": ".networks.worker:weights",
-}
-"""Module, of this package or beside it, and function of each task; it takes the job's arrays, and
-returns the result's."""
-
-EXTRAS = {
-    "draco": "cutcell",
-    "fbx": "cutcell",
-    "usd": "cutcell[usd]",
-    "network_recipes": "cutcell[networks]",
-    "network_weights": "cutcell[networks]",
-}
-"""What installs the library of a task, where it is not `cutcell[copyleft]`."""
-
 
 def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
-    """Do one task."""
-    module, function = TASKS[task].split(":")
+    """Call a function, named as "module:function", with the arrays of the job."""
+    module, function = task.split(":")
     limit_memory(int(memory))
     with np.load(job_path) as job:
         arrays = {name: job[name] for name in job.files}
     begin = perf_counter()
     try:
-        result = getattr(import_module(f".{module}", "cutcell.isolated"), function)(**arrays)
+        result = getattr(import_module(module), function)(**arrays)
     except ModuleNotFoundError as error:
-        extra = EXTRAS.get(task, "cutcell[copyleft]")
-        failed = f"{error.name} is not installed; try: pip install '{extra}'"
-        result = {"failed": failed}
+        result = {"missing": str(error.name)}
     except (RuntimeError, ValueError, MemoryError) as error:
         result = {"failed": str(error) or type(error).__name__}
     np.savez(result_path, **result, seconds=perf_counter() - begin)

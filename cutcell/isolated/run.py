@@ -42,9 +42,17 @@ class WorkFailedError(CutcellError):
 
 
 def run_isolated(
-    task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
+    task: str,
+    job: Mapping[str, Any],
+    limit: float,
+    who: str,
+    memory: int = 0,
+    extra: str = "cutcell",
 ) -> dict[str, Any]:
-    """Do a task of `cutcell.isolated`."""
+    """Call a function, named as "module:function", in a subprocess; it takes and returns arrays.
+
+    If its library is missing, the error says to install `extra`.
+    """
     with tempfile.TemporaryDirectory() as folder:
         job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
         np.savez(job_path, **job)
@@ -54,6 +62,9 @@ def run_isolated(
             raise WorkFailedError(_last_words(done, who))
         with np.load(result_path) as result:
             arrays = {name: result[name] for name in result.files}
+    if "missing" in arrays:
+        advice = f"try: pip install '{extra}'"
+        raise WorkFailedError(f"{arrays['missing']} is not installed; {advice}")
     if "failed" in arrays:
         raise WorkFailedError(str(arrays["failed"]))
     return arrays

@@ -162,7 +162,7 @@ def _set_name() -> str:
     """Name the functions that this compiler makes of these sources for this processor."""
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
     processor = sys.platform, binding.get_host_cpu_name(), get_host_cpu_features()
-    parts = repr((compiler, processor, source_digest()))
+    parts = repr((compiler, processor, source_digest(PACKAGE)))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"
 
 

@@ -1,4 +1,4 @@
-"""Hashes of the package's sources: what was computed by other code is stale."""
+"""Hashes of sources: what was computed by other code is stale."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 @cache
-def source_digest(*left_out: str) -> str:
-    """Hash all Python sources of cutcell but those in some folders, 32 hexadecimal digits."""
+def source_digest(*paths: Path) -> str:
+    """Hash Python sources: files, and all below folders. Returns 32 hexadecimal digits."""
     digest = hashlib.blake2b(digest_size=16)
-    for path in sorted(PACKAGE.rglob("*.py")):
-        name = path.relative_to(PACKAGE)
-        if name.parts[0] not in left_out:
-            content = hashlib.blake2b(path.read_bytes()).digest()
-            digest.update(f"{name.as_posix()}\n".encode() + content)
+    for path in paths:
+        for file in sorted(path.rglob("*.py")) if path.is_dir() else (path,):
+            name = file.relative_to(path.parent).as_posix()
+            digest.update(f"{name}\n".encode() + hashlib.blake2b(file.read_bytes()).digest())
     return digest.hexdigest()

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.dataset import audit, save_audit
 from cutcell.rig import Rig, Skeleton
+from cutcell_lab.dataset import audit, save_audit
 from tests.viewers.arm import arm_rig
 
 

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from cutcell.dataset import load_audit
+from cutcell_lab.dataset import load_audit
 from tests.app.audits import saved_audit
 from tests.app.browser import Visit, changed, served
 from tests.app.test_browser_accessibility import lasting

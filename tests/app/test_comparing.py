@@ -4,13 +4,13 @@ import threading
 
 import pytest
 
-from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.isolated.run import _WANTED
 from cutcell.runtime.progress import silent
 from cutcell_app.commands import compare, loading
 from cutcell_app.jobs.jobs import COMPARING, Job
 from cutcell_app.layout.session import begin
 from cutcell_app.panels.compare import rows_of
+from cutcell_lab.baselines import METHODS, BaselineBinding
 from tests.viewers.arm import arm_rig
 
 

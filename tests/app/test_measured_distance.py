@@ -6,11 +6,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 import cutcell
-from cutcell.baselines.body import Body
-from cutcell.baselines.volumes.voxel_binding import voxel_distances
-from cutcell.baselines.volumes.voxels import voxelize
 from cutcell.errors import ParameterError
 from cutcell_app.scenes.measured_distance import MEASURES, measure_distance
+from cutcell_lab.baselines.body import Body
+from cutcell_lab.baselines.volumes.voxel_binding import voxel_distances
+from cutcell_lab.baselines.volumes.voxels import voxelize
 from tests.bars import bar, fork
 
 METHOD = cutcell.PAPER.with_options(resolution=24)

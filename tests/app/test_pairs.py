@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from cutcell.dataset import load_audit
 from cutcell_app.commands import keys, loading, pairs
 from cutcell_app.layout import status
 from cutcell_app.layout.session import begin
@@ -12,6 +11,7 @@ from cutcell_app.panels.pairs import pairs as panel
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state.pairs import OpenedAudit
+from cutcell_lab.dataset import load_audit
 from tests.app.audits import saved_audit
 from tests.viewers.arm import arm_rig
 

@@ -222,8 +222,8 @@ def test_what_was_odd_about_the_file_is_told(bound):
 def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     bound, loop, monkeypatch
 ):
-    from cutcell.baselines import METHODS, BaselineBinding
     from cutcell_app.commands.compare import cancel
+    from cutcell_lab.baselines import METHODS, BaselineBinding
 
     def fails(rig):
         return BaselineBinding(None, failed="it cannot")

@@ -7,8 +7,8 @@ import pytest
 
 import cutcell
 from benchmarks import document, quality
-from cutcell.baselines import METHODS
-from cutcell.baselines.compare import compare
+from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.compare import compare
 from tests.conftest import SHARED_RIGS
 
 

@@ -45,7 +45,7 @@ def fbx_scene(path: Path) -> Mapping[str, NDArray]:
     memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     try:
         job = {"data": np.frombuffer(data, np.uint8)}
-        return run_isolated("fbx", job, seconds, "the FBX reader", memory)
+        return run_isolated("cutcell.isolated.fbx:read", job, seconds, "the FBX reader", memory)
     except WorkFailedError as e:
         raise FileError(f"cannot be read as FBX: {e}") from None
 

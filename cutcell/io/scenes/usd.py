@@ -38,7 +38,12 @@ def usd_scene(path: Path) -> Mapping[str, NDArray]:
     read_bytes(path)  # says what it says of every file: not there, a folder, empty
     try:
         return run_isolated(
-            "usd", {"path": np.array(str(path.resolve()))}, SECONDS, "the USD reader", MEMORY
+            "cutcell.isolated.usd:read",
+            {"path": np.array(str(path.resolve()))},
+            SECONDS,
+            "the USD reader",
+            MEMORY,
+            extra="cutcell[usd]",
         )
     except WorkFailedError as e:
         raise FileError(f"cannot be read as USD: {e}") from None

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.runtime.progress import silent
 from cutcell_app.commands.compare import Compared, choose, measured, next_method
@@ -15,6 +14,7 @@ from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
 from cutcell_app.state import State
 from cutcell_app.state.compare import NOW, offered
+from cutcell_lab.baselines import METHODS, BaselineBinding
 from tests.viewers.arm import arm_rig
 
 

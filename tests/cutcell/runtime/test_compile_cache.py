@@ -147,7 +147,7 @@ def test_each_compiler_has_a_set_of_its_own(what, monkeypatch):
 def test_a_change_of_any_source_makes_all_kernels_stale(part, tmp_path, monkeypatch):
     copied = tmp_path / "cutcell"
     shutil.copytree(sources.PACKAGE, copied, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(sources, "PACKAGE", copied)
+    monkeypatch.setattr(compile_cache, "PACKAGE", copied)
     monkeypatch.setattr(compile_cache, "source_digest", sources.source_digest.__wrapped__)
 
     before = compile_cache._set_name.__wrapped__()

@@ -11,9 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from cutcell.baselines.compare.markdown import comparison_markdown
-from cutcell.baselines.compare.scores import Comparison, MethodScore, RigScore
-from cutcell.baselines.compare.terminal import comparison_table
 from cutcell.cli.console import print_json, print_line, print_table, print_warnings, progress_bars
 from cutcell.metrics import Turn
 from cutcell.rig import Rig, Skeleton, TriangleMesh
@@ -27,6 +24,9 @@ from cutcell.runtime.display import (
     without_folders,
 )
 from cutcell_app.files.table_export import save_numbers
+from cutcell_lab.baselines.compare.markdown import comparison_markdown
+from cutcell_lab.baselines.compare.scores import Comparison, MethodScore, RigScore
+from cutcell_lab.baselines.compare.terminal import comparison_table
 
 NASTY = {
     "colour": "\x1b[31mred\x1b[0m",

@@ -162,7 +162,9 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
     seconds = MIN_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
     memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     try:
-        return run_isolated("draco", job, seconds, "the Draco decoder", memory)
+        return run_isolated(
+            "cutcell.isolated.draco:decode", job, seconds, "the Draco decoder", memory
+        )
     except WorkFailedError as e:
         raise FileError(f"its Draco compression cannot be undone: {e}") from None
 

@@ -8,9 +8,9 @@ import trimesh
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.baselines.compare import compare
 from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.metrics import clip_error, deformation_error
+from cutcell_lab.baselines.compare import compare
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, Builder, column
 from tests.gltf_validator.validator import errors, reports
 

@@ -1,0 +1,4 @@
+from . import baselines as baselines
+from . import dataset as dataset
+from . import networks as networks
+from .baselines.compare import compare as compare

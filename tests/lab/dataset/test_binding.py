@@ -1,0 +1,328 @@
+"""The store: complete, resumable, the same however it is made, and no asset spoils another."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from contextlib import nullcontext
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+import cutcell
+import cutcell_lab
+from cutcell.errors import CutcellError, FileError, ParameterError
+from cutcell.runtime.memory import SHARE
+from cutcell_assets.generate import KINDS, generate
+from cutcell_lab.dataset.bind import binding
+from cutcell_lab.dataset.bind.binding import bind_all, bind_isolated
+from cutcell_lab.dataset.bind.cluster import connected
+from cutcell_lab.dataset.bind.runner import AssetLostError, Runner, stop_runners
+from cutcell_lab.dataset.bind.work import bind_content, rignet_bones
+from cutcell_lab.dataset.read.formats import faces_of_edges
+from cutcell_lab.dataset.read.sources import Content, find_sources
+from cutcell_lab.dataset.read.store import Parameters, Store, read_entry
+
+QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
+
+# What Dask leaves to the garbage collector is not ours.
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+]
+
+
+def rigs_in(folder: Path, count: int = 4) -> Path:
+    folder.mkdir()
+    for k in range(count):
+        rig = generate(KINDS[k % 4], k, detail=16)
+        cutcell.save(folder / f"rig{k}.npz", rig)
+    return folder
+
+
+def files_of(store: Path) -> dict[str, bytes]:
+    return {p.name: p.read_bytes() for p in store.glob("??/*.npz")}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Return rigs, one of them broken and one twice, a store of them, and its report."""
+    root = tmp_path_factory.mktemp("made")
+    folder = rigs_in(root / "rigs")
+    (folder / "broken.npz").write_bytes(b"PK broken")
+    (folder / "copy.npz").write_bytes((folder / "rig0.npz").read_bytes())
+    report = bind_all([folder], root / "store", QUICK, workers=1)
+    return folder, root / "store", report
+
+
+def test_every_asset_is_there_or_says_why_not(made):
+    folder, store, report = made
+    assert len(report.rows) == 6
+    assert list(report.failures) == ["broken"]
+    assert "npz archive" in report.failures["broken"]
+    rows = {row["name"]: row for row in Store(store).manifest()}
+    assert rows["copy"]["path"] == rows["rig0"]["path"], "computed once"
+    rig = cutcell.load(folder / "rig2.npz")
+    entry = read_entry(store / rows["rig2"]["path"])
+    binding = cutcell.bind(rig, method=QUICK.method)
+    np.testing.assert_array_equal(entry.weights, binding.weights.astype(np.float32))
+    np.testing.assert_array_equal(entry.distances, binding.distances.joint.T.astype(np.float32))
+    np.testing.assert_array_equal(entry.artist, rig.weights.astype(np.float32))
+    assert rows["rig2"]["nodes"] == len(binding.graph.nodes)
+    assert rows["rig2"]["l1"] == cutcell.metrics.weight_l1(binding.weights, rig.weights)
+
+
+def test_single_bones_are_at_least_as_far_as_their_joint(made):
+    """Leaf bones are points: the least over a joint's bones is the joint's own distance."""
+    _, store, _ = made
+    for _, entry in Store(store).entries():
+        least = np.full(entry.distances.shape, np.inf, np.float32)
+        for bone, (joint, _) in enumerate(entry.bone_joints):
+            least[:, joint] = np.minimum(least[:, joint], entry.bone_distances[:, bone])
+        there = np.isfinite(entry.distances)
+        np.testing.assert_allclose(least[there], entry.distances[there], rtol=1e-5, atol=1e-6)
+
+
+def test_bones_come_in_rignets_order():
+    skeleton = cutcell.Skeleton(np.arange(15.0).reshape(5, 3), [-1, 0, 0, 1, 1])
+    assert rignet_bones(skeleton).tolist() == [
+        [0, 1], [0, 2], [2, 2], [1, 3], [3, 3], [1, 4], [4, 4],
+    ]  # fmt: skip
+    assert rignet_bones(cutcell.Skeleton([[0, 0, 0]], [-1])).tolist() == [[0, 0]]
+
+
+@pytest.fixture
+def copied(made, tmp_path):
+    """Return the same with a copy of the store, which a test may change."""
+    folder, store, report = made
+    return folder, Path(shutil.copytree(store, tmp_path / "copy")), report
+
+
+def test_a_second_run_computes_nothing_and_a_change_one(copied, tmp_path):
+    folder, store, _ = copied
+    before = {p: p.stat().st_mtime_ns for p in store.glob("??/*")}
+    again = bind_all([folder], store, QUICK, workers=1)
+    assert (again.bound, again.known, again.failed) == (0, 6, 1)
+    assert {p: p.stat().st_mtime_ns for p in store.glob("??/*")} == before
+    other = rigs_in(tmp_path / "rigs")
+    cutcell.save(other / "rig0.npz", generate("hand", 99, detail=16))
+    changed = bind_all([other], store, QUICK, workers=1)
+    assert (changed.bound, changed.known) == (1, 3)
+
+
+def test_a_damaged_record_is_made_again(copied):
+    folder, store, report = copied
+    expected = files_of(store)
+    (path,) = {row["path"] for row in report.rows if row["name"] == "rig0"}
+    victim = (store / path).with_suffix(".json")
+    assert victim.exists()
+    victim.write_text("{")
+    (victim.parent / ".cutcell-0123456789abcdef.npz").write_bytes(b"half")
+    again = bind_all([folder], store, QUICK, workers=1)
+    assert again.bound == 1
+    assert files_of(store) == expected
+    assert not list(store.rglob(".cutcell-*"))
+
+
+def test_precision_and_parameters_name_other_files(made):
+    folder, _, _ = made
+    content = find_sources([folder / "rig1.npz"])[0].content()
+    full = bind_content(content, "k", QUICK)
+    half = bind_content(content, "k", Parameters(QUICK.method, "float16"))
+    assert len(half.data) < 0.7 * len(full.data)
+    assert (
+        len({p.digest() for p in (QUICK, Parameters(QUICK.method, "float16"), Parameters())}) == 3
+    )
+    with pytest.raises(ParameterError, match="precision"):
+        Parameters(precision="float8")
+
+
+def test_too_little_memory_is_told_before_it_is_taken(made, monkeypatch):
+    folder, _, _ = made
+    content = find_sources([folder / "rig1.npz"])[0].content()
+    monkeypatch.setattr("cutcell_lab.dataset.bind.binding.available_memory", lambda: 1000)
+    try:
+        outcome = bind_isolated(content, "k", QUICK, 60, 1)
+    finally:
+        stop_runners()
+    assert "memory" in outcome.error
+    assert outcome.record["passing"]
+
+
+def test_a_second_attempt_charges_memory_once(monkeypatch):
+    """A second charge would wait for the memory of the first for ever."""
+
+    class Killed:
+        def bind(self, content, key, parameters, limit, reserve):
+            reserve(600)
+            raise AssetLostError("it was killed", passing=True)
+
+    monkeypatch.setattr(binding, "available_memory", lambda: int(1000 / SHARE))
+    monkeypatch.setattr(binding, "lend_runner", lambda: nullcontext(Killed()))
+    arguments = (Content("file", {}), "k", QUICK, 60, 1)
+    thread = threading.Thread(target=binding.bind_isolated, args=arguments, daemon=True)
+    thread.start()
+    thread.join(10)
+    assert not thread.is_alive()
+    assert binding._budget.charged == 0
+
+
+FAKE = """
+import sys, os, time
+from pickle import load
+from cutcell_lab.dataset.bind.runner import write
+out = os.fdopen(os.dup(1), "wb")
+write(out, "ready")
+while True:
+    content, key, parameters = load(sys.stdin.buffer)
+    write(out, 5)
+    load(sys.stdin.buffer)
+    if key == "hang": time.sleep(1000)
+    if key == "crash": os.abort()
+    if key == "exit": sys.exit("no more")
+    if key == "killed": os.kill(os.getpid(), 9)
+    write(out, key + " done")
+"""
+
+
+def test_a_crash_or_a_hang_costs_one_asset():
+    runner = Runner(command=[sys.executable, "-c", FAKE])
+    content = Content("file", {"a.npz": b""})
+
+    def ask(key: str, limit: float = 60):
+        return runner.bind(content, key, QUICK, limit)
+
+    try:
+        assert ask("a") == "a done"
+        with pytest.raises(AssetLostError, match="crashed") as crash:
+            ask("crash")
+        assert not crash.value.passing
+        with pytest.raises(AssetLostError, match="killed") as killed:
+            ask("killed")
+        assert killed.value.passing, "another try may do better"
+        assert ask("b") == "b done"
+        with pytest.raises(AssetLostError, match="longer than 1 seconds"):
+            ask("hang", 1)
+        with pytest.raises(AssetLostError, match="exit code 1: no more"):
+            ask("exit")
+        assert ask("c") == "c done"
+    finally:
+        runner.stop()
+
+
+def test_a_killed_run_goes_on_to_the_same_store(made, tmp_path):
+    """The command is killed with all that it started, twice, as soon as it has written a file."""
+    folder, store, _ = made
+    goal = tmp_path / "store"
+    options = ["--resolution", "12", "--workers", "1", "--quiet"]
+    command = [sys.executable, "-m", "cutcell", "dataset", "bind", str(folder), str(goal), *options]
+    for wanted in (1, 2):
+        process = subprocess.Popen(command, start_new_session=True)
+        while process.poll() is None and len(list(goal.glob("??/*.npz"))) < wanted:
+            time.sleep(0.01)
+        assert process.poll() is None, "it ended before it was killed"
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    subprocess.run(command, check=True)
+    assert files_of(goal) == {k: v for k, v in files_of(store).items() if k in files_of(goal)}
+    assert len(files_of(goal)) == 4
+    assert not list(goal.rglob(".cutcell-*"))
+    manifest = {row["name"]: row["error"] for row in Store(goal).manifest()}
+    assert len(manifest) == 6
+    assert (goal / "report.html").read_text().startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize("processes", [False, True])
+def test_no_other_machine_can_reach_the_workers(processes):
+    with connected(None, 2, processes):
+        ours = [psutil.Process(), *psutil.Process().children(recursive=True)]
+        sockets = [socket for process in ours for socket in process.net_connections("inet")]
+        addresses = {s.laddr.ip for s in sockets if s.status == psutil.CONN_LISTEN}
+    assert addresses <= {"127.0.0.1", "::1"}
+
+
+def test_sources_of_every_kind_are_found(made, tmp_path):
+    folder, store, _ = made
+    rig = cutcell.load(folder / "rig3.npz")
+    for name in ("obj", "rig_info"):
+        (tmp_path / name).mkdir()
+    cutcell.save(tmp_path / "both.txt", rig)
+    (tmp_path / "both.obj").rename(tmp_path / "obj" / "7.obj")
+    (tmp_path / "both.txt").rename(tmp_path / "rig_info" / "7.txt")
+    cutcell_lab.dataset.export(store, tmp_path / "unirig", "unirig")
+    cutcell_lab.dataset.export(store, tmp_path / "puppeteer.h5", "puppeteer")
+    cutcell.save(tmp_path / "one.glb", rig)
+    sources = {s.name: s for s in find_sources([tmp_path])}
+    assert {s.kind for s in sources.values()} == {"file", "rignet", "unirig", "puppeteer"}
+    assert {"obj/7", "unirig/rig3", "puppeteer/sample_0", "one"} <= set(sources)
+    for name in ("obj/7", "unirig/rig3", "one"):
+        outcome = bind_content(sources[name].content(), "k", QUICK)
+        assert not outcome.error
+        assert outcome.record["sizes"]["joints"] == len(rig.skeleton.joints)
+    assert not bind_content(sources["puppeteer/sample_0"].content(), "k", QUICK).error
+
+
+def test_faces_are_found_from_edges():
+    mesh = generate("beast", 3, detail=16, clean=True).mesh
+    edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    faces = faces_of_edges(mesh.vertices, edges)
+    known = {tuple(sorted(f)) for f in mesh.faces.tolist()}
+    found = {tuple(sorted(f)) for f in faces.tolist()}
+    assert len(known - found) == 0
+    assert len(found) < 1.02 * len(known)
+    square = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    with pytest.raises(FileError, match="no triangles"):
+        faces_of_edges(np.zeros((4, 3)), square)
+
+
+def test_wrong_inputs_are_told(tmp_path, made):
+    folder, _, _ = made
+    with pytest.raises(FileError, match="no such file"):
+        find_sources([tmp_path / "none"])
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(FileError, match="holds no rigs"):
+        find_sources([tmp_path / "empty"])
+    np.savez(tmp_path / "all.npz", [{"uuid": "a"}])
+    with pytest.raises(FileError, match="split it first"):
+        find_sources([tmp_path / "all.npz"])
+    with pytest.raises(FileError, match="holds other files"):
+        bind_all([folder], folder, QUICK)
+    with pytest.raises(CutcellError, match="no Dask scheduler"):
+        bind_all([folder], tmp_path / "s", QUICK, scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(ParameterError, match="time_limit"):
+        bind_all([folder], tmp_path / "s", QUICK, time_limit=0)
+    with pytest.raises(FileError, match="is no store"):
+        Store(folder).manifest()
+
+
+def test_the_manifest_has_hashes_times_and_memory(made):
+    _, store, _ = made
+    row = next(r for r in Store(store).manifest() if r["name"] == "rig0")
+    for column in ("content", "key", "bytes", "seconds_graph", "memory", "version", "warnings"):
+        assert row[column] is not None
+    assert json.loads((store / "store.json").read_text())["method"]["resolution"] == 12
+
+
+def test_a_second_call_keeps_the_rows_of_the_first(made, tmp_path):
+    folder, _, _ = made
+    for name in ("rig0", "rig1"):
+        report = bind_all([folder / f"{name}.npz"], tmp_path / "store", QUICK, workers=1)
+        assert [row["name"] for row in report.rows] == [name]
+    store = Store(tmp_path / "store")
+    assert [row["name"] for row in store.manifest()] == ["rig0", "rig1"]
+    assert [name for name, _ in store.entries()] == ["rig0", "rig1"]
+
+
+def test_a_change_of_the_code_makes_the_assets_of_a_store_stale(monkeypatch):
+    before = QUICK.digest()
+    assert before == QUICK.digest()
+    monkeypatch.setattr("cutcell_lab.dataset.read.store.source_digest", lambda *left_out: "other")
+    assert QUICK.digest() != before
