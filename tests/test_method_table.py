@@ -36,7 +36,7 @@ def rows() -> list[tuple[str, str, str, list[str]]]:
 
 
 def imported(file: str, function: str):
-    module = file.removesuffix(".py").replace("/", ".")
+    module = re.sub(r"^lab\b", "cutcell_lab", file.removesuffix(".py").replace("/", "."))
     return getattr(importlib.import_module(module), function)
 
 
