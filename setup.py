@@ -28,7 +28,9 @@ def readme():
 
 packages = find_packages(include=["cutcell", "cutcell.*"])
 for name, folder in FOLDERS.items():
-    packages += [name, *(f"{name}.{below}" for below in find_packages(folder))]
+    # Benchmarks need a checkout.
+    below = find_packages(folder, exclude=["benchmarks"])
+    packages += [name, *(f"{name}.{package}" for package in below)]
 
 setup(
     packages=packages,

@@ -1,7 +1,3 @@
-"""Side-by-side measurements that print the tables in docs/."""
+"""Measurements of time and memory that print tables in docs/."""
 
-from numba import get_num_threads
-
-# Numba looks for its threading library when threads are first needed. Embree and Open3D bring a
-# TBB that is too old for it, and it warns if that one is there already: be first.
-get_num_threads()
+import cutcell_lab.benchmarks  # noqa: F401  first: it loads numba's threads before Embree is loaded

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 
 from cutcell.graph import build_graph
+from cutcell_lab.benchmarks.document import fill
+from cutcell_lab.benchmarks.rigs import Character, load_characters
+from cutcell_lab.benchmarks.tables import Table, ratio, seconds
 
-from .document import fill
 from .mesher import MESHERS
 from .meshers import attempt
-from .rigs import Character, load_characters
-from .tables import Table, ratio, seconds
 from .timing import in_turn
 
 

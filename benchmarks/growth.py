@@ -18,7 +18,7 @@ from time import perf_counter
 
 import numpy as np
 
-from .tables import Table, publish, seconds
+from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
 ROOT = Path(__file__).resolve().parent.parent
 RIG = ROOT / "assets" / "biped.glb"

@@ -22,10 +22,10 @@ import cutcell
 from cutcell.geometry.weld import weld
 from cutcell.weights.rig_falloff import diffusion
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
+from cutcell_lab.benchmarks.rigs import ROOT
+from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
 from .report import circumstances
-from .rigs import ROOT
-from .tables import Table, publish, seconds
 
 STAGES = ("graph", "distances", "weights")
 

@@ -23,10 +23,9 @@ from cutcell.rig import Rig
 from cutcell_lab.baselines.body import Body
 from cutcell_lab.baselines.cages.cage_methods import harmonic
 from cutcell_lab.baselines.volumes.voxel_binding import voxel_distances
-
-from .document import fill
-from .rigs import ROOT
-from .tables import Table
+from cutcell_lab.benchmarks.document import fill
+from cutcell_lab.benchmarks.rigs import ROOT
+from cutcell_lab.benchmarks.tables import Table
 
 ARM, HIPS = ("forearm.L", "hand.L"), ("thigh.L", "hips")
 NEAR = 0.06

@@ -14,10 +14,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cutcell.graph.memory import needed_memory
+from cutcell_lab.benchmarks.rigs import ROOT, rig_paths
+from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
 from .growth import run
-from .rigs import ROOT, rig_paths
-from .tables import Table, publish, seconds
 
 LARGE = ROOT / "assets" / "biped.glb", 512
 

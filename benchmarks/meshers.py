@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from cutcell.graph import build_graph
+from cutcell_lab.benchmarks.rigs import Character
+from cutcell_lab.benchmarks.tables import Table, seconds
 
 from .mesher import MESHERS
-from .rigs import Character
 from .stages import prepare
-from .tables import Table, seconds
 from .timing import in_turn
 
 SCRIPT = Path(__file__).with_name("mesher.py")

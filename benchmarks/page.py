@@ -15,15 +15,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from playwright.sync_api import Browser, sync_playwright
 
+from cutcell_lab.benchmarks.document import PAGE_SPEED, fill
+from cutcell_lab.benchmarks.tables import Table, ratio, seconds
 from scripts.get_chromium import FLAGS, find
 
-from .document import PAGE_SPEED, fill
 from .page_joints import joints_table
 from .page_subjects import SIZE, Material, cutcell_subject, material, vtk_subject
 from .page_visitor import Visitor, served
 from .page_weights import weights_table
 from .report import circumstances
-from .tables import Table, ratio, seconds
 from .timing import Times
 
 OURS, THEIRS = "cutcell", "pn.pane.VTK"

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from playwright.sync_api import Browser
 
 import cutcell
+from cutcell_lab.benchmarks.tables import Table
 
 from .page_subjects import character
 from .page_visitor import Watched
-from .tables import Table
 from .visitors import served
 
 STEP = 3

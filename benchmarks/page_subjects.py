@@ -18,14 +18,13 @@ from cutcell_app.scenes.common import camera_part
 from cutcell_app.scenes.pose import clip_part
 from cutcell_app.state import State
 from cutcell_app.widgets.view import SceneView
+from cutcell_lab.benchmarks.shapes import chain
 from cutcell_viewers.camera import framing
 from cutcell_viewers.character import body, bones, pose_in_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.graph_scene import graph_scene
 from cutcell_viewers.pose_scene import swing
 from cutcell_viewers.skin import moved
-
-from .shapes import chain
 
 SIZE = (800, 600)
 BONES = 50

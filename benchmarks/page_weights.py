@@ -9,10 +9,10 @@ from pathlib import Path
 from playwright.sync_api import Browser
 
 import cutcell
+from cutcell_lab.benchmarks.tables import Table
 
 from .page_subjects import character
 from .page_visitor import Watched
-from .tables import Table
 from .timing import Times
 from .visitors import served
 

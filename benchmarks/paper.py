@@ -19,12 +19,13 @@ import cutcell
 from cutcell.geodesics.fallback import UNREACHED
 from cutcell.metrics import TURNED, deformation_error
 from cutcell_lab.baselines import METHODS
+from cutcell_lab.benchmarks import gvb, optimisation, runtime
+from cutcell_lab.benchmarks.document import fill
+from cutcell_lab.benchmarks.rigs import ROOT, SHARED
+from cutcell_lab.benchmarks.tables import Table
+from cutcell_lab.benchmarks.wild import files_of
 
-from . import graph_construction, gvb, optimisation, runtime
-from .document import fill
-from .rigs import ROOT, SHARED
-from .tables import Table
-from .wild import files_of
+from . import graph_construction
 
 PAPER, QUALITY = ROOT / "docs" / "paper.md", ROOT / "docs" / "quality.md"
 PICTURE = ROOT / "docs" / "pictures" / "gvb.png"

@@ -14,10 +14,9 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-
-from .document import fill
-from .rigs import rig_paths
-from .tables import Table
+from cutcell_lab.benchmarks.document import fill
+from cutcell_lab.benchmarks.rigs import rig_paths
+from cutcell_lab.benchmarks.tables import Table
 
 STEP = 0.005
 """Of the longest side: how far a joint moves each time, as under a pointer."""

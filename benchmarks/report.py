@@ -14,9 +14,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from cutcell.runtime.writing import write_all
+from cutcell_lab.benchmarks import accuracy
+from cutcell_lab.benchmarks.rigs import ROOT
 
-from . import accuracy, growth, memory, speed
-from .rigs import ROOT
+from . import growth, memory, speed
 
 PACKAGES = ("numpy", "numba", "scipy", "libigl", "embreex", "open3d")
 INTRODUCTION = """\

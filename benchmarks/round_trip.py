@@ -24,10 +24,9 @@ from cutcell.io.gltf.read.accessors import read_accessor
 from cutcell.io.gltf.read.read import GltfSource
 from cutcell.io.materials.transfer import has_materials
 from cutcell.io.rignet import word_names
+from cutcell_lab.benchmarks.rigs import ROOT, SHARED
+from cutcell_lab.benchmarks.tables import Table, publish
 from tests.gltf_validator.validator import reports
-
-from .rigs import ROOT, SHARED
-from .tables import Table, publish
 
 SEVERITIES = ("error", "warning", "information", "hint")
 GLTF = (".glb", ".gltf", ".vrm")

@@ -9,9 +9,10 @@ import argparse
 import time
 from collections.abc import Sequence
 
-from .document import PAGE_SPEED, fill
+from cutcell_lab.benchmarks.document import PAGE_SPEED, fill
+from cutcell_lab.benchmarks.tables import Table
+
 from .report import circumstances
-from .tables import Table
 from .visitors import BOUND, Server, Visitor, served
 
 GIVEN_BACK = 45.0

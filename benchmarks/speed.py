@@ -19,11 +19,11 @@ from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.graph import build_graph
 from cutcell.weights.warm_up import warm_up
+from cutcell_lab.benchmarks.rigs import Character, load_characters
+from cutcell_lab.benchmarks.tables import Table, publish, ratio, seconds
 
 from . import meshers, recipe, start_up
-from .rigs import Character, load_characters
 from .stages import cast, decide, midpoints, prepare
-from .tables import Table, publish, ratio, seconds
 from .timing import Times, in_turn
 
 ALL = "**median**"

@@ -11,8 +11,9 @@ import tempfile
 from pathlib import Path
 from time import perf_counter
 
-from .rigs import ROOT, Character
-from .tables import Table
+from cutcell_lab.benchmarks.rigs import ROOT, Character
+from cutcell_lab.benchmarks.tables import Table
+
 from .timing import Times
 
 NOTHING = "pass"

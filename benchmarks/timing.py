@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from .tables import seconds
+from cutcell_lab.benchmarks.tables import seconds
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.httpclient import HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
-from .rigs import ROOT
+from cutcell_lab.benchmarks.rigs import ROOT
 
 PATIENCE = 120.0
 MAX_MESSAGE = 2**28

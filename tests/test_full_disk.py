@@ -26,7 +26,7 @@ import cutcell
 from cutcell_lab.baselines.compare import compare
 from cutcell_lab.baselines.compare.plot import plot_comparison
 from cutcell_app.files.table_export import save_numbers
-from tests.cutcell_lab.baselines.test_compare import character
+from tests.lab.baselines.test_compare import character
 from tests.viewers.arm import arm_rig
 from cutcell_viewers import film
 from cutcell_viewers.weights_scene import weights_scene

@@ -51,14 +51,14 @@ MAX_FILES = 15
 
 
 def modules_of(package: str) -> list[str]:
-    """Names of all modules of a package here, found by their files, but those that import torch.
+    """Names of all modules of a package, found by their files.
 
-    These are the networks' own; tests_networks imports them.
+    Left out are those that import torch, which tests_networks imports, and benchmarks.
     """
     names = []
     folder = ROOT / FOLDERS[package]
     for path in sorted(folder.rglob("*.py")):
-        if path.relative_to(ROOT).as_posix() in TORCH:
+        if path.relative_to(ROOT).as_posix() in TORCH or folder / "benchmarks" in path.parents:
             continue
         parts = (package, *path.relative_to(folder).with_suffix("").parts)
         if parts[-1] != "__main__":  # importing it runs the command

@@ -16,7 +16,7 @@ from cutcell.cli.app import app
 ROOT = Path(__file__).resolve().parent.parent
 TEXT = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
 TEX = ROOT.parent / "shared" / "paper" / "cut-cell-prior.tex"
-PACKAGES = {"viewers": "cutcell_viewers", "app": "cutcell_app"}
+PACKAGES = {"app": "cutcell_app", "lab": "cutcell_lab", "viewers": "cutcell_viewers"}
 VERDICTS = {"yes", "partly", "no", "not tried"}
 HEADS = ["paper", "what", "where", "by", "result", "agrees"]
 LABELS = [
@@ -120,7 +120,7 @@ def test_commands_are_there():
 def is_there(command: str) -> bool:
     first, *words = shlex.split(command)
     if first == "python":
-        module = ROOT / (words[1].replace(".", "/") + ".py")
+        module = ROOT / (words[1].removeprefix("cutcell_").replace(".", "/") + ".py")
         parts = set(words[2:]) if words[1] == "benchmarks.paper" else set()
         return words[0] == "-m" and module.exists() and parts <= set(PARTS)
     if first == "cutcell":

@@ -7,10 +7,10 @@ from PIL import Image
 
 import cutcell
 from benchmarks import network_data
-from benchmarks.network_scores import dropped, groups, means, scores
-from benchmarks.networks import Run, main
 from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell_assets.generate import generate
+from cutcell_lab.benchmarks.network_scores import dropped, groups, means, scores
+from cutcell_lab.benchmarks.networks import Run, main
 from cutcell_lab.networks import sample_rig
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
@@ -52,8 +52,8 @@ def test_it_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):
         for file in files:
             copied = tmp_path / name / ("quat_robot.glb" if file == "robot" else f"{file}.glb")
             copied.write_bytes((ASSETS / f"{file}.glb").read_bytes())
-    monkeypatch.setattr("benchmarks.networks.SHARED", tmp_path)
-    monkeypatch.setattr("benchmarks.networks.LOADED", {})
+    monkeypatch.setattr("cutcell_lab.benchmarks.networks.SHARED", tmp_path)
+    monkeypatch.setattr("cutcell_lab.benchmarks.networks.LOADED", {})
     out = tmp_path / "networks.md"
     out.write_text("<!-- networks -->\n<!-- /networks -->\n")
     words = ["--priors", "none,cutcell", "--heads", "puppeteer", "--seeds", "2", "--points", "16"]

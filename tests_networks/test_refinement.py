@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks.refinement import corrected, fit, main, maker, pairs_of
+from cutcell_lab.benchmarks.refinement import corrected, fit, main, maker, pairs_of
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
 
@@ -47,7 +47,7 @@ def test_the_maker_is_told_by_the_name(name, by):
 def test_each_character_is_listed(tmp_path, monkeypatch, capsys):
     given = {"rigs": {"one_bar": painted(20, 0.5)}, "wild": {"two_bar": painted(24, 0.6)}}
     monkeypatch.setattr(
-        "benchmarks.refinement.characters", lambda group: given.get(group, {}).items()
+        "cutcell_lab.benchmarks.refinement.characters", lambda group: given.get(group, {}).items()
     )
     out = tmp_path / "networks.md"
     out.write_text("<!-- refinement -->\n<!-- /refinement -->\n")

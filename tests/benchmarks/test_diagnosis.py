@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks import diagnosis
-from benchmarks.damages import DAMAGES, Damaged
+from cutcell_lab.benchmarks import diagnosis
+from cutcell_lab.benchmarks.damages import DAMAGES, Damaged
 from tests.benchmarks.markdown import read_tables
 from tests.cutcell.diagnosis.worm import worm
 

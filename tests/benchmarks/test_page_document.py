@@ -2,7 +2,7 @@
 
 import shutil
 
-from benchmarks.document import PAGE_SPEED, fill
+from cutcell_lab.benchmarks.document import PAGE_SPEED, fill
 
 
 def test_all_tables_have_their_place(tmp_path):

@@ -6,18 +6,9 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks import (
-    clean,
-    crosstalk,
-    graph_construction,
-    gvb,
-    leaks,
-    optimisation,
-    paper,
-    runtime,
-    wild,
-)
-from benchmarks.rigs import ROOT
+from benchmarks import graph_construction, leaks, paper
+from cutcell_lab.benchmarks import clean, crosstalk, gvb, optimisation, runtime, wild
+from cutcell_lab.benchmarks.rigs import ROOT
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
 

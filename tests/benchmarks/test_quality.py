@@ -6,9 +6,9 @@ import shutil
 import pytest
 
 import cutcell
-from benchmarks import document, quality
 from cutcell_lab.baselines import METHODS
 from cutcell_lab.baselines.compare import compare
+from cutcell_lab.benchmarks import document, quality
 from tests.conftest import SHARED_RIGS
 
 

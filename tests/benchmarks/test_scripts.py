@@ -5,23 +5,10 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import (
-    accuracy,
-    dataset,
-    growth,
-    large,
-    memory,
-    meshers,
-    orientation,
-    report,
-    speed,
-    start_up,
-    tables,
-    timing,
-    wild,
-)
-from benchmarks.rigs import ROOT, load_characters
+from benchmarks import growth, large, memory, meshers, report, speed, start_up, timing
 from cutcell.weights.warm_up import warm_up
+from cutcell_lab.benchmarks import accuracy, dataset, orientation, tables, wild
+from cutcell_lab.benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
 
 DEMO = str(ROOT / "assets" / "robot.glb")

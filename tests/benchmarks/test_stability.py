@@ -3,7 +3,7 @@
 import pytest
 
 import cutcell
-from benchmarks.stability import ALLOWED, change
+from cutcell_lab.benchmarks.stability import ALLOWED, change
 
 pytestmark = pytest.mark.slow
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from benchmarks import truth
+from cutcell_lab.benchmarks import truth
 
 STRAIGHT = truth.Tube(
     lambda t: (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks import weight_changes
+from cutcell_lab.benchmarks import weight_changes
 from tests.benchmarks.markdown import read_tables
 
 pytestmark = pytest.mark.slow

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks.damages import DAMAGES, READING
 from cutcell.diagnosis import SEVERITIES, TITLES
+from cutcell_lab.benchmarks.damages import DAMAGES, READING
 from tests.cutcell.diagnosis.worm import SWEEP, worm
 
 WORM = worm()

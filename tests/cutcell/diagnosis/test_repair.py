@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from benchmarks.damages import DAMAGES, READING
 from cutcell import ParameterError
 from cutcell.io.gltf.container import read_document
 from cutcell_assets import demo_path
+from cutcell_lab.benchmarks.damages import DAMAGES, READING
 from tests.cutcell.diagnosis.worm import SWEEP, worm
 
 WORM = worm()

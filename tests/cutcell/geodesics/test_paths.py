@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks.paths import outside_by, samples_of
 from cutcell import (
     ParameterError,
     Skeleton,
@@ -15,6 +14,7 @@ from cutcell import (
 from cutcell.geodesics import PIECES, path_length, shortest_path, trace_path
 from cutcell.geodesics.tracing.inside import TOLERANCE
 from cutcell_assets import demo_path
+from cutcell_lab.benchmarks.paths import outside_by, samples_of
 from tests import meshes
 from tests.cutcell.geodesics.test_any_angle import l_bar
 from tests.paper import bone_distances, build_graph

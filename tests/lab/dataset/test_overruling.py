@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from tests.cutcell_lab.dataset.test_audit import planted
 
 import cutcell
 from cutcell.errors import FileError, ParameterError
@@ -17,6 +16,7 @@ from cutcell_lab.dataset.audit.audit_files import (
 )
 from cutcell_lab.dataset.audit.auditing import audit
 from cutcell_lab.dataset.audit.duplicates import DIFFERENT, DUPLICATE
+from tests.lab.dataset.test_audit import planted
 
 pytestmark = pytest.mark.slow
 

@@ -1,6 +1,6 @@
 """Measure the weight that parts side by side share across the gap, on the demo characters.
 
-    python -m benchmarks.crosstalk [--methods NAME,...] [--out docs/quality.md]
+    python -m cutcell_lab.benchmarks.crosstalk [--methods NAME,...] [--out docs/quality.md]
 
 The artist's weights of these characters are made, not painted: they share nothing there.
 """
@@ -102,7 +102,9 @@ def crosstalk_table(methods: Sequence[str], places: Sequence[Place] = PLACES) ->
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print or write."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.crosstalk", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.crosstalk", description=__doc__
+    )
     parser.add_argument("--methods", help="names with commas between; all when left out")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
     options = parser.parse_args(argv)

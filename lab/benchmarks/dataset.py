@@ -1,6 +1,6 @@
 """`cutcell dataset` on data of the size and the faults that are out there.
 
-python -m benchmarks.dataset PART [--assets N] [--folder DIR] [--document]
+python -m cutcell_lab.benchmarks.dataset PART [--assets N] [--folder DIR] [--document]
 
 PART is whole, kills, workers, audit or growth.
 
@@ -27,7 +27,6 @@ from typing import Any
 import numpy as np
 import psutil
 from scipy.spatial import cKDTree
-from tests.cutcell_lab.dataset.test_audit import planted
 
 import cutcell
 from cutcell_assets.generate import KINDS, generate
@@ -39,6 +38,7 @@ from cutcell_lab.dataset.audit.points import Normalised, normalised
 from cutcell_lab.dataset.bind.cluster import connected
 from cutcell_lab.dataset.read.sources import read_source
 from cutcell_lab.dataset.read.store import MANIFEST, read_table
+from tests.lab.dataset.test_audit import planted
 
 from .document import fill
 from .rigs import ROOT, SHARED

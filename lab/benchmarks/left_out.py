@@ -1,6 +1,6 @@
 """Compare rules and the learned model on characters of makers that it did not learn from.
 
-    python -m benchmarks.left_out [--groups N] [--out docs/learned_weights.md]
+    python -m cutcell_lab.benchmarks.left_out [--groups N] [--out docs/learned_weights.md]
 
 For each maker of `rigs` and `wild` the model is trained again on all others; with --groups only so
 many times, each time without several makers. Its characters are

@@ -1,6 +1,6 @@
 """Suspicious weights, by `cutcell.diagnose`, of artists, and in those of other methods.
 
-    python -m benchmarks.suspicion [RIG ...] [--resolution 64] [--out docs/diagnose.md]
+    python -m cutcell_lab.benchmarks.suspicion [RIG ...] [--resolution 64] [--out docs/diagnose.md]
 
 Nothing is compared with the artist's weights here: each set of weights is examined by itself.
 """

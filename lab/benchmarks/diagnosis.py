@@ -1,6 +1,6 @@
 """Whether a diagnosis names the fault of damaged rigs, and says nothing grave of sound ones.
 
-python -m benchmarks.diagnosis [RIG ...] [--resolution R] [--markdown OUT]
+python -m cutcell_lab.benchmarks.diagnosis [RIG ...] [--resolution R] [--markdown OUT]
 
 Some rigs are damaged in each way of `damages.py`. A fault counts as found if a finding of its code
 is there that names at least half of the elements that were damaged.

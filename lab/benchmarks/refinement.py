@@ -1,6 +1,6 @@
 """Train a small network to correct `bind`, and measure it on makers that it never saw.
 
-    python -m benchmarks.refinement [--epochs 10] [--parts 0.3 1] [--out docs/networks.md]
+    python -m cutcell_lab.benchmarks.refinement [--epochs 10] [--parts 0.3 1] [--out FILE]
 
 For each vertex and each of its nearest joints it sees what the core knows of the pair, and changes
 the logarithm of the weight. Each maker of ../shared/data/rigs and wild is left out in turn: a

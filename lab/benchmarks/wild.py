@@ -1,6 +1,6 @@
 """Measure our weights on all characters, with the joints of their makers and as fresh ones.
 
-    python -m benchmarks.wild [SET...] [--resolution 64] [--out docs/quality.md]
+    python -m cutcell_lab.benchmarks.wild [SET...] [--resolution 64] [--out docs/quality.md]
 
 Sets are rigs, wild and train, folders in ../shared/data; all three when none is named. A file's
 weights tell which joints carry some: "known". A fresh character has no weights: then

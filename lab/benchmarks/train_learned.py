@@ -1,7 +1,7 @@
 """Train the model of `refine="learned"` again, the same bit for bit on one machine.
 
     pip install 'cutcell[learn]'
-    python -m benchmarks.train_learned [--out cutcell/weights/learned/forest.npz]
+    python -m cutcell_lab.benchmarks.train_learned [--out cutcell/weights/learned/forest.npz]
 
 It learns on all characters of rigs, wild and train in ../shared/data with weights whose licences
 allow derived work (docs/learned_weights.md), from which joint is the strongest of each vertex.

@@ -1,6 +1,6 @@
 """Effects of `cutcell.clean` on damaged weights, on those of other methods and of artists.
 
-    python -m benchmarks.clean [SET...] [--resolution 64] [--near 2 3 4] [--out docs/clean.md]
+    python -m cutcell_lab.benchmarks.clean [SET...] [--resolution 64] [--near 2 3] [--out FILE]
 
 Sets are rigs, wild and train, folders in ../shared/data. Weights by artists are the truth: they
 are damaged in known ways, replaced by those of other methods, and cleaned as they are.
@@ -239,7 +239,9 @@ def _carrying(rig: Rig) -> NDArray[np.intp]:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.clean", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.clean", description=__doc__
+    )
     parser.add_argument("sets", nargs="*", metavar="SET", help=f"of {', '.join(SETS)}")
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--near", nargs="*", type=float, default=[2, 2.5, 3, 4, 6])

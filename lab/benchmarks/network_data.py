@@ -1,12 +1,12 @@
 """Do augmentation and generated characters help a network? Train with and without, and measure.
 
-    python -m benchmarks.network_data [--epochs 12] [--seeds 3] [--heads rignet,unirig]
+    python -m cutcell_lab.benchmarks.network_data [--epochs 12] [--seeds 3] [--heads rignet,unirig]
                                       [--size tiny] [--prior cutcell_any] [--folder FOLDER]
                                       [--print] [--out docs/networks.md]
 
 Four ways to learn: from ../shared/data/train alone or with as many characters more, 70 generated
 and 40 people, each with augmentation and without. All look at equally many characters in all: with
-twice as many there are half as many epochs. Measured on rigs and wild, as in benchmarks.networks;
+twice as many there are half as many epochs. Measured on rigs and wild, as in `networks` beside it;
 those by MakeHuman, the source of generated people, apart from the others.
 Every result is kept in the folder; the table lists all that are there. People take `pip install
 anny`. Needs cutcell[networks,dataset].
@@ -205,7 +205,9 @@ def report(results: dict[Run, Result], data: Data) -> str:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, train what is not there yet, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.network_data", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.network_data", description=__doc__
+    )
     parser.add_argument("--epochs", type=int, default=12)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--size", default="tiny")

@@ -1,6 +1,6 @@
 """Time of shortest paths against that of optimisation (the paper's Figure "geodesics").
 
-    python -m benchmarks.optimisation [RIG...] [--resolution 64] [--repeats 3]
+    python -m cutcell_lab.benchmarks.optimisation [RIG...] [--resolution 64] [--repeats 3]
 
 Making tetrahedra or graph is left out, as in the paper: from there to weights.
 """
@@ -62,7 +62,9 @@ def optimisation_table(
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.optimisation", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.optimisation", description=__doc__
+    )
     parser.add_argument("rigs", nargs="*", help="all at hand when left out")
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=3)

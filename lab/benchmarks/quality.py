@@ -1,8 +1,8 @@
 """Measure every method on real characters, and write the tables of docs/quality.md.
 
-    python -m benchmarks.quality                       measure all, and write docs/
-    python -m benchmarks.quality --methods A,B         these again, keep what is known of others
-    python -m benchmarks.quality RIG... [--methods A,B] [--json FILE] [--plot FILE]
+    python -m cutcell_lab.benchmarks.quality                       measure all, and write docs/
+    python -m cutcell_lab.benchmarks.quality --methods A,B         these again, keep the others
+    python -m cutcell_lab.benchmarks.quality RIG... [--methods A,B] [--json FILE] [--plot FILE]
 
 The first form takes an hour or more, most of it tetrahedra, and keeps what it has in
 docs/quality.json after each rig: with --resume it goes on after what is there. It measures
@@ -125,7 +125,7 @@ def write_docs(comparison: Comparison, docs: Path, resolution: int) -> None:
 def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.quality",
+        prog="python -m cutcell_lab.benchmarks.quality",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -1,6 +1,6 @@
 """Which faces of real meshes are inside out, and what becomes of meshes that are inverted.
 
-python -m benchmarks.orientation [FILE ...] [--resolution R] [--markdown OUT]
+python -m cutcell_lab.benchmarks.orientation [FILE ...] [--resolution R] [--markdown OUT]
 
 For each mesh: as it is in the file, inverted as a whole, and with a ball of faces inverted. Meshes
 of which nothing is turned, and whose inside is the same in all three, are only counted.

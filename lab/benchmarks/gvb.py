@@ -1,6 +1,6 @@
 """Accuracy, time and graph size beside geodesic voxel binding, over R (the paper's Figure "gvb").
 
-    python -m benchmarks.gvb [RIG...] [--resolutions 16 ... 256] [--plot FILE] [--out DOCUMENT]
+    python -m cutcell_lab.benchmarks.gvb [RIG...] [--resolutions 16 ...] [--plot FILE] [--out FILE]
 
 Times are those of one run on each rig; other work on the machine shows in them.
 """
@@ -163,7 +163,9 @@ def plot(comparisons: dict[int, Comparison], sizes: dict[int, dict[str, Size]], 
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.gvb", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.gvb", description=__doc__
+    )
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--resolutions", nargs="+", type=int, default=[16, 32, 64, 128, 256])
     parser.add_argument("--plot", type=Path)

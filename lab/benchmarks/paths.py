@@ -1,6 +1,6 @@
 """How far drawn paths leave the body: random paths on every rig, with each kind of connectivity.
 
-    python -m benchmarks.paths [RIG ...] [--paths 1000] [--out docs/performance.md]
+    python -m cutcell_lab.benchmarks.paths [RIG ...] [--paths 1000] [--out docs/performance.md]
 
 Every path is sampled ten times a lattice cell. A sample whose winding number is below tau is
 outside; how far, is measured to the nearest point of the surface or of an edge inside.

@@ -1,7 +1,7 @@
 """Show where weights differ between two versions of the code, and whether they got better.
 
-    python -m benchmarks.weight_changes record FOLDER [SET...] [--resolution 64]
-    python -m benchmarks.weight_changes compare OLD NEW [--out docs/quality.md]
+    python -m cutcell_lab.benchmarks.weight_changes record FOLDER [SET...] [--resolution 64]
+    python -m cutcell_lab.benchmarks.weight_changes compare OLD NEW [--out docs/quality.md]
 
 `record` binds all characters of the sets (demos, rigs, wild, more) with the joints of their makers
 ("known") and with their weights forgotten ("fresh"), and writes the weights into a folder; run it

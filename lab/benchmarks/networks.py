@@ -1,6 +1,6 @@
 """Train each head with each prior, and measure all on characters that they never saw.
 
-    python -m benchmarks.networks [--epochs 3] [--seeds 3] [--heads A,B] [--priors A,B]
+    python -m cutcell_lab.benchmarks.networks [--epochs 3] [--seeds 3] [--heads A,B] [--priors A,B]
                                   [--size tiny] [--folder FOLDER] [--print] [--out docs/networks.md]
                                   [--figure docs/pictures/networks.png]
 
@@ -170,7 +170,9 @@ def _before(stored: dict[str, dict], run: Run, options: argparse.Namespace) -> f
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, train what is not there yet, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.networks", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.networks", description=__doc__
+    )
     parser.add_argument("--epochs", type=int, default=3)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--size", default="tiny")

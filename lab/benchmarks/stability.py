@@ -1,6 +1,6 @@
 """Measure how much weights change where the character is the same in every way that counts.
 
-    python -m benchmarks.stability [SET...] [--resolution 64]
+    python -m cutcell_lab.benchmarks.stability [SET...] [--resolution 64]
 
 Each character of a set (rigs, wild, train) is bound again with noise of a millionth of its size,
 with its vertices in another order, turned by 90 degrees, and welded; the table lists the share of

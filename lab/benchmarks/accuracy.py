@@ -1,6 +1,6 @@
 """How far distances are from true ones, on shapes whose true ones are known.
 
-python -m benchmarks.accuracy [--resolutions 16 32 64 128] [--shapes ...] [--markdown OUT]
+python -m cutcell_lab.benchmarks.accuracy [--resolutions 16 32 ...] [--shapes ...] [--markdown OUT]
 """
 
 from __future__ import annotations
@@ -138,7 +138,9 @@ def _add(accuracy, cost, name, connectivity, row, base, resolutions) -> None:
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.accuracy", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.accuracy", description=__doc__
+    )
     parser.add_argument("--resolutions", type=int, nargs="+", default=[16, 32, 64, 128])
     parser.add_argument("--shapes", nargs="+", choices=SHAPES, default=list(SHAPES))
     parser.add_argument("--repeats", type=int, default=1)

@@ -1,6 +1,6 @@
 """Time by stage, over R (the paper's Figure "runtime").
 
-python -m benchmarks.runtime [RIG...] [--resolutions 16 32 64 128] [--plot FILE]
+python -m cutcell_lab.benchmarks.runtime [RIG...] [--resolutions 16 32 64 128] [--plot FILE]
 """
 
 from __future__ import annotations
@@ -78,7 +78,9 @@ def plot(seconds_of: dict[tuple[str, int], dict[str, float]], path: Path) -> Non
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.runtime", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m cutcell_lab.benchmarks.runtime", description=__doc__
+    )
     parser.add_argument("rigs", nargs="*", help="all at hand when left out")
     parser.add_argument("--resolutions", nargs="+", type=int, default=[32, 64, 128])
     parser.add_argument("--repeats", type=int, default=3)
