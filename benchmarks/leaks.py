@@ -29,7 +29,7 @@ from cutcell_lab.benchmarks.tables import Table
 
 ARM, HIPS = ("forearm.L", "hand.L"), ("thigh.L", "hips")
 NEAR = 0.06
-"""Of the longest side: a vertex of the hip this near to the arm is beside it."""
+"""Largest distance of a vertex beside the arm, relative to the longest side."""
 SIZE = (560, 700)
 
 

@@ -19,7 +19,7 @@ from cutcell_lab.benchmarks.rigs import rig_paths
 from cutcell_lab.benchmarks.tables import Table
 
 STEP = 0.005
-"""Of the longest side: how far a joint moves each time, as under a pointer."""
+"""Step of a joint, relative to the longest side, as under a pointer."""
 
 
 def rebinding_table(rigs: Sequence[cutcell.Rig], moves: int, resolution: int) -> Table:

@@ -31,7 +31,7 @@ from tests.gltf_validator.validator import reports
 SEVERITIES = ("error", "warning", "information", "hint")
 GLTF = (".glb", ".gltf", ".vrm")
 SINGLE = 2e-7
-"""What weights may differ by where they are stored as float32."""
+"""Largest difference of weights that are stored as float32."""
 READ = ("*.glb", "*.gltf", "*.vrm", "*.fbx", "*.usd*", "*.npz", "*.txt")
 
 

@@ -25,10 +25,10 @@ DOES = {
     "the first demo bound": "",
     "a vertex chosen and three methods compared": "/?panel=compare&vertex=100",
 }
-"""What each session has done when it is weighed, and the address that makes it do so."""
+"""State of a session when its memory is measured, and the address that brings it there."""
 
 COMPARED = r'(?s)^(?!.*(?:Computing|Waiting)).*"fixed"'
-"""What the page says when its table of methods is filled."""
+"""Text of the page when its table of methods is filled."""
 
 
 def visit(server: Server, count: int, query: str) -> list[Visitor]:

@@ -24,7 +24,7 @@ from cutcell_lab.benchmarks.rigs import ROOT
 PATIENCE = 120.0
 MAX_MESSAGE = 2**28
 BOUND = r"interior, .* surface"
-"""What the page says when the weights are there."""
+"""Text of the page when the weights are ready."""
 
 
 class Server:

@@ -203,7 +203,7 @@ def tour(visit: Visit) -> None:
 
 
 def open_address(visit: Visit, query: str) -> None:
-    """Load the page anew with other choices."""
+    """Load the page again with other choices."""
     visit.page.goto(visit.url.partition("?")[0] + query)
     visit.wait_until_bound()
 

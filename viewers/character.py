@@ -17,7 +17,7 @@ from .skin import Skin, rigid_skin, skin_of_weights
 CREASE = np.cos(np.radians(45))
 """Faces that meet at a sharper angle than this keep their edge."""
 OUTLINE = 0.0009
-"""Of a bone: in parts of the diagonal of the character's box."""
+"""Thickness of a bone's outline, relative to the diagonal of the character's box."""
 
 MAX_AT_A_PLACE = 64
 """Vertices that share a normal; a heap of more is no smooth surface, and would take for ever."""

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 WIDTH = 7.2
 """Inches, the width of a printed page's text. One panel alone has half of it."""
 LETTERS = 16.0
-"""How many letters an inch has room for."""
+"""Letters that fit into an inch."""
 BAR = 0.09
 """Height of a colour bar, in inches."""
 STYLE: Any = {

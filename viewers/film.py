@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 PICTURES = (".png", ".jpg", ".jpeg")
 FILMS = (".mp4", ".gif")
 FIGURES = (".pdf", ".svg", ".png")
-"""Of several panels, or of one with its text as text."""
+"""Formats of figures: of several panels, or of one with its text as text."""
 MAX_PANELS = 6
 TURN_SECONDS = 6.0
 LONGEST = 20.0
 """Seconds of a motion that are filmed at most."""
 PROBED = 24
-"""Poses of a motion that are looked at to find the room it takes, at most."""
+"""Largest number of poses that are sampled to frame a motion."""
 FRAMES = {".mp4": 30, ".gif": 20}
 """Frames a second of each kind of film."""
 

@@ -15,11 +15,11 @@ from .palette import MARK
 from .skin import Skin, moved, rigid_skin, skin_of_weights
 
 MAX_BEADS = 4000
-"""Of many vertices, evenly chosen ones are marked."""
+"""Largest number of marked vertices; of more, evenly spaced ones are marked."""
 VERTEX, JOINT = 0.0022, 0.009
 """Radii of marks, in parts of the diagonal of the character's box."""
 NEAREST = 0.2
-"""Of the diagonal: a smaller part is seen with what is around it."""
+"""Smallest size of the framed part, relative to the diagonal."""
 
 
 def finding_marks(rig: Rig, finding: Finding) -> dict[str, Actor]:

@@ -22,13 +22,13 @@ DASH = 0.3
 NODES = {"mesh nodes": MESH, "interior nodes": INTERIOR, "surface nodes": SURFACE}
 """The names of the actors of nodes, and the kind that each shows."""
 FORMS: tuple[Literal["round", "square", "triangle"], ...] = ("round", "square", "triangle")
-"""Of mesh, interior and surface nodes."""
+"""Shapes of mesh, interior and surface nodes."""
 NODE_THICK = (0.12, 0.09, 0.16)
 """The radii of mesh nodes, in the length of most mesh edges, and of the others, in cells."""
 WIDTH, NODE_WIDTH = 1.5, 4.0
 """A sixth of the pixels that lines and points are wide at most."""
 KINDS = ("mesh", "interior", "surface")
-"""What kinds of nodes and edges are called."""
+"""Names of the kinds of nodes and edges."""
 
 LAYERS = {"mesh edges": MESH, "interior edges": INTERIOR, "surface edges": SURFACE}
 """The names of the three actors, and the kind of edge that each shows."""

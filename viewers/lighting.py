@@ -6,7 +6,7 @@ from .description import Actor
 LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
 AMBIENT, DIFFUSE = 0.16, 1.0
 SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
-"""Of materials: images have shadows of their own, and would be dark where light is, too."""
+"""Softer light for materials, whose images contain shadows already."""
 
 
 def shading(actor: Actor) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from .skin import Skin, skin_of_weights
 DOT = 4.0
 """How wide the marks of many vertices are, in pixels of the screen."""
 LIFT = 0.0008
-"""Of the diagonal of the character's box: how far from the surface they are."""
+"""Distance of the marks from the surface, relative to the diagonal of the character's box."""
 BALL = 13.0
 """How wide a vertex's mark is, in pixels of the screen."""
 TUBE = 0.0035

@@ -18,7 +18,7 @@ LARGEST = 2**26
 """Pixels of an image that is decoded: 8192 by 8192."""
 SIDES = (1024, 512, 256, 128)
 MAX_PIXELS = 2**23
-"""Of all layers together: 32 MB."""
+"""Largest size of all layers together: 32 MB."""
 MAX_LAYERS = 64
 OPAQUE = 255
 HALF = 128

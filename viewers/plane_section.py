@@ -15,7 +15,7 @@ from .description import Cut
 COARSEST, FINEST = 72, 128
 """Triangles of a section along the longest side of the body."""
 MARGIN = 0.04
-"""How far around the body the winding number is told, in parts of its longest side."""
+"""Margin around the body in which the winding number is drawn, relative to its longest side."""
 ROUNDS = 6
 """How often pieces of the outline that are no edges of the triangulation are halved."""
 CLEAR = 0.55
@@ -23,7 +23,7 @@ CLEAR = 0.55
 PULLED = 0.02
 """How far towards a triangle's centre its corners are asked for, so that they are on one side."""
 WHOLE = 1e-6
-"""Winding numbers that differ by less from whole numbers count as whole."""
+"""Largest difference of a winding number from an integer that is rounded off."""
 WELDED = 1e-9
 """Places that are nearer than this, in parts of the longest side, are one."""
 

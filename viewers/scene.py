@@ -190,7 +190,7 @@ class Scene:
 
 
 OVERLAY_OFFSET = -26_000
-"""Of 65,536 steps of depth: how much nearer overlays are drawn where there is one layer."""
+"""Depth offset of overlays where there is one layer, in steps of 1/65,536."""
 OCCLUSION_RADIUS = 0.06
 """How far away what darkens a corner may be, in the scene's longest side."""
 

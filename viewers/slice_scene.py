@@ -19,7 +19,7 @@ BEAD = 0.2
 MARGIN = 1.5
 """How far beyond the body rays are drawn, in cells."""
 ALIKE = 0.005
-"""Winding numbers that differ by less are told as one."""
+"""Largest difference of winding numbers that share one label."""
 
 
 def slice_scene(

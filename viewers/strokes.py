@@ -90,7 +90,7 @@ _CORNERS = {
     "lines": ((0, -1), (1, -1), (0, 1), (1, 1)),
     "points": ((-1, -1), (1, -1), (-1, 1), (1, 1)),
 }
-"""Of the two triangles of each: which end and side of a line, or where around a point."""
+"""Corners of the two triangles of each: end and side of a line, or place around a point."""
 
 
 def stroke_data(
@@ -112,7 +112,7 @@ def stroke_data(
 
 
 def shade_strokes(drawn: Any, actor: Actor, haze: tuple[float, ...], pixel: float) -> None:
-    """Let the card make strokes of the triangles of `stroke_data`.
+    """Make the shader widen the triangles of `stroke_data` into strokes.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def shade_strokes(drawn: Any, actor: Actor, haze: tuple[float, ...], pixel: floa
 
 
 def see_strokes(drawn: Any, size: tuple[int, int], depths: tuple[float, float]) -> None:
-    """Tell strokes how large the picture is, and between which depths the character lies."""
+    """Set the size of the picture and the range of depths for strokes."""
     uniforms = drawn.GetShaderProperty().GetVertexCustomUniforms()
     uniforms.SetUniform2f("strokeSize", size)
     uniforms.SetUniformf("strokeScale", size[1] / (2 * np.tan(np.radians(VIEW_ANGLE / 2))))

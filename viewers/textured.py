@@ -35,7 +35,7 @@ def pieces(
     data : pyvista.PolyData
         Corners, each with its tint ("colors"), and its position in the image.
     kind : (int, int)
-        The layer, -1 for none, and how the image goes on; see `FaceColors`.
+        The layer, -1 for none, and how the image continues; see `FaceColors`.
     """
     kinds = colors.corners[:, 0, 2:].astype(int)
     for layer, wrap in np.unique(kinds, axis=0).tolist():

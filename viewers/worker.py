@@ -24,7 +24,7 @@ from .film import Order, draw
 from .opengl import require_opengl
 
 ASK_EVERY = 0.1
-"""Seconds after which whoever waits is asked whether the picture is still wanted."""
+"""Seconds between two checks whether the picture is still needed."""
 
 
 def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> None:

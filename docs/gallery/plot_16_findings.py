@@ -1,5 +1,5 @@
 """
-What a check finds
+Findings of a check
 ==================
 
 The cape has no path to any bone. `cutcell diagnose` reports it, and the scene marks it.

@@ -1,5 +1,5 @@
 """
-The shortest-path search on its way
+The shortest-path search step by step
 ===================================
 
 All points up to a part of the greatest distance are coloured.

@@ -36,7 +36,7 @@ picture = cutcell_viewers.show(scene)
 
 # %%
 # **Inside out.** The faces of one arm point inward. cutcell treats them as flipped while it binds. Without this, the
-# arm counts as outside and loses its interior nodes. Distances then lead along its surface, and weights are farther
+# arm is classified as outside and loses its interior nodes. Distances then lead along its surface, and weights are farther
 # from those of the file.
 
 flipped = cutcell.load(demo_path("biped_flipped_arm"))

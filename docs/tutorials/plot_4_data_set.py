@@ -12,7 +12,7 @@ from cutcell_assets import demo_path
 from cutcell_lab.dataset import Store, bind_all
 
 # %%
-# Two characters stand for a folder of thousands. Each is bound in a subprocess, so that a broken file stops
+# Two characters take the place of a folder of thousands. Each is bound in a subprocess, so that a broken file stops
 # nothing. A second call skips what is there.
 
 folder = Path(mkdtemp(prefix="store-"))

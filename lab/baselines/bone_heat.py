@@ -20,10 +20,10 @@ from .visibility import Blockers
 TIE = 1e-4
 """Relative: bones this nearly as near as the nearest warm a vertex as well."""
 MIN_DISTANCE = 1e-4
-"""Of the longest side; a vertex on a bone itself would be infinitely warm."""
+"""Smallest distance to a bone, relative to the longest side: heat is infinite on a bone."""
 FACING = 1.001
 """Distance is divided by half of this plus the cosine between normal and bone: surface that
-looks away from a bone, as it does around a limb, counts as nearer than surface that looks at it."""
+looks away from a bone, as it does around a limb, is taken for nearer than surface that faces it."""
 FADE = (0.025, 0.05)
 """Weights fade out between these, as in Blender; each vertex keeps its largest."""
 

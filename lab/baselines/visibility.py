@@ -19,7 +19,7 @@ LEAF = 4
 DEPTH = 64
 """Nodes that wait while a tree is walked; a tree of halves never needs more."""
 ENDS = 1e-9
-"""What is met at less than this share of the segment from an end does not block it."""
+"""Share of a segment at both ends where triangles do not block it."""
 MARGIN = 1e-12
 """Boxes are larger by this share of the largest coordinate, far more than rounding."""
 

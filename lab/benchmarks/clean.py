@@ -28,9 +28,9 @@ from .tables import Table
 from .wild import SETS, characters
 
 LEAKED, NOISE = 0.4, 0.3
-"""Of a vertex' weight that leaks across a gap, and that noise gives to another joint."""
+"""Share of a vertex's weight that leaks across a gap, and that noise gives to another joint."""
 NOISY = 0.1
-"""Of the vertices, how many are noisy."""
+"""Share of noisy vertices."""
 ISLANDS, ISLAND = 3, 0.02
 """How many islands there are, and which part of the vertices each takes."""
 ALLOWED = 0.01
@@ -52,7 +52,7 @@ def leaked(rig: Rig, resolution: int) -> NDArray[np.float64] | None:
 
 
 def noisy(rig: Rig, resolution: int) -> NDArray[np.float64]:
-    """Let random vertices follow another random joint."""
+    """Give the weight of random vertices to random joints."""
     rng = np.random.default_rng(SEED)
     weights = _weights(rig).copy()
     chosen = np.flatnonzero(rng.random(len(weights)) < NOISY)
@@ -62,7 +62,7 @@ def noisy(rig: Rig, resolution: int) -> NDArray[np.float64]:
 
 
 def with_islands(rig: Rig, resolution: int) -> NDArray[np.float64] | None:
-    """Let patches follow a joint of the farther half that no vertex there follows."""
+    """Give patches to a joint of the farther half that no vertex of the patch follows."""
     rng = np.random.default_rng(SEED)
     vertices, weights = rig.mesh.vertices, _weights(rig).copy()
     carrying, used = _carrying(rig), np.unique(rig.mesh.faces)

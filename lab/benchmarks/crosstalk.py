@@ -69,7 +69,7 @@ def bound(
 
 
 def strongest(weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Leave each vertex its strongest joint alone."""
+    """Keep only the strongest joint of each vertex."""
     alone = np.zeros_like(weights)
     alone[np.arange(len(weights)), weights.argmax(axis=1)] = 1
     return alone

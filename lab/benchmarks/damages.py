@@ -389,7 +389,7 @@ def no_weights(rig: Rig, seed: int) -> Damaged:
 
 
 def many_influences(rig: Rig, seed: int) -> Damaged:
-    """Let a patch of skin follow six joints."""
+    """Give a patch of the skin to six joints."""
     assert rig.weights is not None
     chosen = _patch(rig, seed)
     joints = np.flatnonzero(rig.skeleton.deform)
@@ -402,7 +402,7 @@ def many_influences(rig: Rig, seed: int) -> Damaged:
 
 
 def tear_seams(rig: Rig, seed: int) -> Damaged:
-    """Let the corners of faces that meet follow different joints."""
+    """Give the corners of adjacent faces to different joints."""
     split = split_seams(rig, seed).rig
     assert split.weights is not None
     chosen = _patch(split, seed, share=8)
@@ -445,6 +445,6 @@ DAMAGES: dict[str, tuple[str, Callable[..., Damaged]]] = {
     "six influences": ("many-influences", many_influences),
     "seams that tear": ("torn-seams", tear_seams),
 }
-"""What each damage is called, the code that it must be found by, and what does it."""
+"""Name of each damage, code of the finding that must report it, and function that makes it."""
 READING = (nan_weights, unnormalised_weights)
 """Damages of files: they take a folder to write one to."""

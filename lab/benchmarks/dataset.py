@@ -46,7 +46,7 @@ from .tables import Table, publish
 
 DOCUMENT = ROOT / "docs" / "dataset.md"
 DETAIL = 20
-"""Of the generated characters: 300 to 700 vertices."""
+"""Sizes of generated characters: 300 to 700 vertices."""
 BROKEN = 10
 KINDS_HERE = [kind for kind in KINDS if kind != "person"]
 BIND = ("--quiet", "--resolution", "32")
@@ -235,7 +235,7 @@ def kills(count: int, folder: Path) -> list[Table]:
             if process.poll() is None:
                 strike(mode, process, parts)
                 killed[mode].append(len(list(store.glob("??/*.npz"))))
-            if mode in ("runner", "worker"):  # the run itself goes on: see that, then end it
+            if mode in ("runner", "worker"):  # the run itself continues: check that, then end it
                 goal_count = len(list(store.glob("??/*.npz"))) + 2
                 while process.poll() is None and len(list(store.glob("??/*.npz"))) < goal_count:
                     time.sleep(0.05)

@@ -2,7 +2,7 @@
 
 python -m cutcell_lab.benchmarks.diagnosis [RIG ...] [--resolution R] [--markdown OUT]
 
-Some rigs are damaged in each way of `damages.py`. A fault counts as found if a finding of its code
+Some rigs are damaged in each way of `damages.py`. A fault is detected if a finding of its code
 is there that names at least half of the elements that were damaged.
 """
 

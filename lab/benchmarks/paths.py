@@ -33,7 +33,7 @@ OUTSIDE = PIECES.index("outside")
 
 @dataclass(frozen=True)
 class Found:
-    """Of one rig: the largest distances outside in lattice cells, and other measures."""
+    """Measures of one rig: the largest distances outside, in lattice cells, and others."""
 
     inside: float
     told_outside: int

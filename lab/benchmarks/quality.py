@@ -36,7 +36,7 @@ from .rigs import ROOT, SHARED
 from .shapes import small
 
 SAME_PLACE = 1e-4
-"""Of the longest side: farther from every vertex of Blender's, one has no counterpart."""
+"""Largest distance to a vertex of Blender's that is the same one, relative to the longest side."""
 LIMIT = 300.0
 """Seconds that a mesher or solver in a subprocess may take."""
 

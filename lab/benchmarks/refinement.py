@@ -36,7 +36,7 @@ from .tables import Table
 from .wild import SETS, Score, characters, score_of
 
 JOINTS = 6
-"""Of a vertex: those with the largest weights."""
+"""Joints considered a vertex: those with the largest weights."""
 LEAST = 1e-5
 """A joint with less weight than this before tails are cut off is no candidate."""
 HIDDEN = 24
@@ -222,7 +222,7 @@ class Corrector(torch.nn.Module):
 
 
 def fit(learned: Sequence[Pairs], epochs: int, points: int = 500, seed: int = 0) -> Corrector:
-    """Let a network learn from characters, by L1 and a third of the squared difference."""
+    """Train a network on characters, by L1 and a third of the squared difference."""
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
     learned = [pairs for pairs in learned if len(pairs.learns)]

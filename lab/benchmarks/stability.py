@@ -24,7 +24,7 @@ from .tables import Table
 from .wild import SETS, characters
 
 NOISE = 1e-6
-"""Of the longest side."""
+"""Amount of noise, relative to the longest side."""
 CHANGED = 0.01
 """A weight that changes by more than this has changed."""
 ALLOWED = 1e-3

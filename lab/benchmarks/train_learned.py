@@ -31,9 +31,9 @@ from .wild import SETS, characters
 TREES = 250
 LEAVES = 31
 VERTICES = 400
-"""Of each character."""
+"""Sampled vertices a character."""
 MAX_CHARACTERS = 3
-"""Of each pack of one maker: most of them share a skeleton."""
+"""Characters used of each pack of one maker: most of them share a skeleton."""
 
 
 @dataclass(frozen=True, eq=False)

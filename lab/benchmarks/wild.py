@@ -29,7 +29,7 @@ from .tables import Table
 SETS = ("rigs", "wild", "train")
 ENDINGS = (".glb", ".gltf", ".npz")
 SOME = 0.01
-"""A vertex follows a joint that it gives at least so much."""
+"""Smallest weight at which a vertex follows a joint."""
 MODES = ("known", "fresh")
 
 

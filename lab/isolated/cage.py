@@ -1,4 +1,4 @@
-"""A cage around voxels: a coarse closed surface with room inside."""
+"""A cage around voxels: a coarse closed surface at some distance."""
 
 from __future__ import annotations
 

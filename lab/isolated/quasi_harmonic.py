@@ -17,7 +17,7 @@ from .smooth import constraints, smoothness
 ROUNDS = 5
 """Times that the descent starts again, with half the step (their section 6.1)."""
 STEP = 0.1
-"""Of the first round; tensors start as the identity."""
+"""Step of the first round; tensors start as the identity."""
 ROUND = 0.2
 """Part of each tensor that is the same in all directions: bounds its condition number."""
 MOMENTUM, VARIANCE = 0.9, 0.999

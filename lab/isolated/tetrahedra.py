@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 SAME = 1e-6
-"""Of the longest side: nodes of the tetrahedra this near to a point are that point."""
+"""Distance, relative to the longest side, at which a node is a point of the mesh."""
 FLAGS = "pq1.5YQ"
 """TetGen: keep the surface as it is, make well-shaped tetrahedra, say nothing."""
 SLIM = 0.02

@@ -24,7 +24,7 @@ SCALES = 0.8, 1.25
 LESS_SURFACE, FEWER_JOINTS, OTHER_POSE, BY_AREA = 0.25, 0.5, 0.5, 0.5
 """How often each is done."""
 MAX_LEFT_OUT = 0.5
-"""Of the joints that have a parent."""
+"""Largest share of the joints with a parent that are left out."""
 LARGEST_PART, HOLE = 0.5, 0.15
 """Of the points: a component that is dropped has at most so many, a hole about so many."""
 DEGREES = 15.0

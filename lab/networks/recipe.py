@@ -30,7 +30,7 @@ class Recipe:
     seed : int
         Of the first parameters, the order of characters, the points, and the augmentation.
     points : int
-        Points a character, drawn anew in each epoch.
+        Points a character, sampled again in each epoch.
     resolution : int
         R of the prior.
     augment : bool

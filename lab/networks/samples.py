@@ -23,11 +23,11 @@ RING, NEAR = 6, 16
 KNOWN = 64
 """Neighbours that are kept, so that enough are left among some of the points."""
 FAR = 0.25
-"""Of the longest side: points farther apart along the surface are no neighbours."""
+"""Largest distance of neighbours along the surface, relative to the longest side."""
 LENGTHS = 50_000_000
 """Lengths of paths that are kept at a time, each 8 bytes."""
 MAX_HOPS = 16
-"""Bones between two joints are counted up to so many."""
+"""Largest number of bones counted between two joints."""
 
 
 @dataclass(frozen=True, eq=False)

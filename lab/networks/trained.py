@@ -33,9 +33,9 @@ LIMIT = 600.0
 WORKER, EXTRA = "cutcell_lab.networks.worker", "cutcell[networks]"
 """Module whose functions need torch, and what installs that."""
 TORCH_BYTES = 400_000_000
-"""What torch takes before it has done anything."""
+"""Memory of torch after its import."""
 HIDDEN_BYTES = 16_384
-"""Of the widest layers, for each point and joint of a batch."""
+"""Bytes of the widest layers for each point and joint of a batch."""
 
 
 @dataclass(frozen=True)

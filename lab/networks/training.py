@@ -39,7 +39,7 @@ def train(
     folder: Path | None = None,
     report: Callable[[int, float], Any] = lambda epoch, loss: None,
 ) -> nn.Module:
-    """Train a network, or go on with what is in the folder.
+    """Train a network, or continue the training in the folder.
 
     A GPU is used if there is one, with mixed precision; on a CPU the result is the same each time.
 

@@ -18,7 +18,7 @@ from ..volumes.voxels import mark_triangles
 MARGIN = 2
 """Cells around the cage."""
 ACCURACY = 1e-4
-"""Of the solution, relative."""
+"""Relative tolerance of the solution."""
 
 
 def harmonic_values(

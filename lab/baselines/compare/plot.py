@@ -64,7 +64,7 @@ def plot_comparison(comparison: Comparison, path: str | Path) -> None:
 
 
 def check_plot(path: str | Path) -> Path:
-    """Meet what would stop a plot before the work that it shows."""
+    """Fail early if a plot could not be drawn or saved."""
     path = Path(path)
     if path.suffix.lower() not in ENDINGS:
         raise FileError(f'{path.name}: a plot cannot be "{path.suffix}"; end in .png, .svg or .pdf')

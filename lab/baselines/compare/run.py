@@ -32,7 +32,7 @@ from ..methods import known_options
 from .scores import Comparison, MethodScore, RigScore
 
 GAP_RESOLUTION = 64
-"""Of the graph for the distances through the body between parts."""
+"""Resolution of the graph for distances through the body between parts."""
 
 
 def compare(

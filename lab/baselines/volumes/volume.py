@@ -36,9 +36,9 @@ SOLVERS = {
 HANDLES = 5
 """Points on each bone that the weights are tied to: the middles of its fifths."""
 SAME = 1e-6
-"""Of the longest side: handles this near to each other or to the surface are one point."""
+"""Distance, relative to the longest side, at which handles and surface points merge."""
 EDGE = 0.05
-"""Of the diagonal: edges that fTetWild aims at, its own default."""
+"""Length of edges that fTetWild aims at, relative to the diagonal; its default."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ class Block:
     """Characters in the form of the kernels; all have as many points."""
 
     joints: NDArray[np.float32]
-    """Of all characters, concatenated; of each the outermost first; (k, 3)."""
+    """Joints of all characters, concatenated, the outermost of each first, (k, 3)."""
     start: NDArray[np.int64]
     """First joint of each character, (n + 1,)."""
     boxes: NDArray[np.float64]

@@ -13,7 +13,7 @@ from cutcell.errors import MissingLibraryError
 
 SIZE = 220
 LARGER = 2
-"""Drawn so many times as large, and then made smaller: that smooths the edges."""
+"""Factor of supersampling, which smooths the edges."""
 TURN, TILT = np.radians(-30.0), np.radians(12.0)
 MAX_FACES = 40_000
 GREY = np.array([0.72, 0.75, 0.8])

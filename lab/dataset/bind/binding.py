@@ -27,7 +27,7 @@ from .runner import AssetLostError, lend_runner
 TIME_LIMIT = 600.0
 """Default maximum of seconds per asset."""
 MANIFEST_EVERY = 60.0
-"""Seconds between two manifests while work goes on."""
+"""Seconds between two manifests during the run."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from ..read.store import Entry, Outcome, Parameters, entry_bytes
 COPIES = 8
 """Maximum number of tables of vertices by joints, or vertices by bones, at a time."""
 BYTES_PER_FACE = 2600
-"""Of the stages after the graph; docs/performance.md, growth with the faces."""
+"""Peak bytes a face of the stages after the graph; docs/performance.md, growth with the faces."""
 
 
 def bind_content(

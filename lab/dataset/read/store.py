@@ -34,7 +34,7 @@ STORE = "store.json"
 """The file that marks a folder as a store of `cutcell dataset bind`."""
 MANIFEST = "manifest.parquet"
 FORMAT = 1
-"""Of the files in the store; part of their names."""
+"""Format of the files in the store; part of their names."""
 Precision = Literal["float32", "float16"]
 PRECISIONS: tuple[Precision, ...] = ("float32", "float16")
 SPARSE = 0.5

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from cutcell.errors import FileError
 
 MAX_BYTES = 2**30
-"""Of one entry in the pickle."""
+"""Largest size of one entry in the pickle."""
 MAX_ITEMS = 10_000_000
-"""Of one entry: a few bytes can nest a list in itself so often that it has billions."""
+"""Largest number of values of one entry, which a few bytes could make billions."""
 MAX_DEPTH = 20
 """Containers inside each other."""
 MAX_REMEMBERED = 200
@@ -40,7 +40,7 @@ _Unframer: Any = vars(pickle)["_Unframer"]
 
 @dataclass(frozen=True)
 class Refused:
-    """Stands for an object that is not data; calls and changes of it do nothing.
+    """Placeholder of an object that is not data; calls and changes of it do nothing.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class _DataUnpickler(_Unpickler):
         yield from (self._plain(entry, 0) for entry in entries)
 
     def _plain(self, value: Any, depth: int) -> Any:
-        """Return a value with arrays in place of what stands for them."""
+        """Return a value with arrays in place of their placeholders."""
         self._items += 1
         if self._items > MAX_ITEMS or depth > MAX_DEPTH:
             raise FileError(f"{self._what} holds an entry of too many nested lists; it is damaged")

@@ -9,7 +9,7 @@ from ..batches import Batch
 from .layers import edge_features, mlp, pooled, straight_distances
 
 BONES = 5
-"""Of each point; all others get no weight."""
+"""Joints considered a point; all others get no weight."""
 EACH = 8
 """Numbers a bone: two ends, inverse distance, whether it is a leaf."""
 DROPPED = 0.5
