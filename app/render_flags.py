@@ -101,7 +101,7 @@ SETTINGS: Flags = {
         " surface, voxel, 6, 26, any, converged. R is that of --resolution.", INSIDE,
     ),
 }  # fmt: skip
-"""What `render.settings_of` reads."""
+"""Options that `render.settings_of` reads."""
 
 PICTURE: Flags = {
     "turntable": (bool, False, "--turntable", "", "Film it from all around.", HOW),
@@ -129,4 +129,4 @@ PICTURE: Flags = {
     "transparent": (bool, False, "--transparent", "", "No background: PNG.", HOW),
     "legend": (bool, True, "--legend/--no-legend", "", "Write the legend on it.", HOW),
 }  # fmt: skip
-"""What `render.order` is given."""
+"""Options that are passed to `render.order`."""

@@ -70,7 +70,7 @@ def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
     session : Session
     query : str
     otherwise : callable
-        Loads a character where the address names none that is there.
+        Loads a character where the address names none that exists.
     """
     choices, arrival, problems = from_query(query, session.state)
     session.state.param.update(**choices)

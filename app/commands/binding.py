@@ -1,4 +1,4 @@
-"""Compute graph, distances and weights of the character that stands there.
+"""Compute graph, distances and weights of the open character.
 
 Weights follow the falloff at once, as the distances stay. A falloff that takes a while is worked
 out once for many influences; how many are kept is decided after.
@@ -34,7 +34,7 @@ from .correct import finished
 from .session import Session
 
 OF_GRAPH = tuple(name for name in GRAPH if name != "leaf")
-"""What the graph depends on."""
+"""Choices that the graph depends on."""
 QUICK = ("paper",)
 """Falloffs that are worked out again with every change, without a thread of their own."""
 

@@ -36,7 +36,7 @@ SEEN = ["panel", "rig", "binding", "joint", "playing", "brush", "brush_mode", "b
 
 
 def watch(session: Session) -> None:
-    """Let the view have a brush, and the weights follow it."""
+    """Connect the brush of the view to the weights."""
     follow = session.state.param.watch
     hand = Hand(session)
     session.view.listen("brush", hand.paint)
@@ -117,7 +117,7 @@ def select(session: Session, chosen: NDArray[np.bool_]) -> None:
 
 
 def clear_selection(session: Session) -> None:
-    """Let strokes go anywhere."""
+    """Remove all limits of strokes."""
     session.state.brush_selection = None
 
 
@@ -144,7 +144,7 @@ class Hand:
         self._selected: NDArray[np.bool_] | None = None
 
     def paint(self, message: dict[str, Any]) -> None:
-        """Go on with a stroke, show what it makes of the weights, and take that when it ends.
+        """Continue a stroke, show its effect on the weights, and adopt it when it ends.
 
         Parameters
         ----------

@@ -41,7 +41,7 @@ def _begin_anew(session: Session) -> None:
 
 
 def examine(session: Session) -> None:
-    """Diagnose what stands there, unless its graph is known to be sound or not."""
+    """Diagnose the open character, unless its diagnosis is there already."""
     state, binder = session.state, session.binder
     if state.graph is None or not binder.is_for(binding_request(state)):
         return  # the graph of the present choices is not built yet
@@ -159,6 +159,6 @@ def _corrections(session: Session, before: Rig, after: Rig) -> dict[str, Any]:
 
 
 def take_back(session: Session) -> None:
-    """Let the character stand there as it was before all repairs."""
+    """Restore the character as it was before all repairs."""
     if session.state.repair is not None:
         swap(session, session.state.repair.before, repair=None)

@@ -88,7 +88,7 @@ def next_method(state: State) -> str | None:
 
 
 def find(session: Session) -> None:
-    """Start computing, unless that goes on already."""
+    """Start computing, unless that runs already."""
     state, jobs = session.state, session.tasks.jobs("compare")
     if state.panel != "compare" or state.binding is None or jobs.running:
         return

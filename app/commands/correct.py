@@ -40,7 +40,7 @@ def correct(session: Session, corrections: Corrections) -> None:
 
 
 def corrected_state(session: Session, corrections: Corrections) -> dict[str, Any]:
-    """Return what of the state changes with corrections of the character that stands there.
+    """Return the values of the state that corrections of the open character change.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def check_alone(skeleton: Skeleton, joint: int) -> None:
 
 
 def choose_deform(session: Session, joints: Collection[int]) -> None:
-    """Let some joints carry weight and no others."""
+    """Choose the joints that may carry weight."""
     state = session.state
     deform = np.zeros(len(state.rig.skeleton.joints), bool)
     deform[list(joints)] = True
@@ -230,7 +230,7 @@ def lock(session: Session, joints: Collection[int]) -> None:
 
 
 def leave_out(session: Session, joints: Collection[int]) -> None:
-    """Let some joints carry no weight, and say so when it is done."""
+    """Exclude some joints from carrying weight, and report it."""
     state = session.state
     names = [shown_name(state.rig.skeleton.names[j]) for j in joints]
     carrying = set(np.flatnonzero(state.rig.skeleton.deform).tolist())

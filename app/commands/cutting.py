@@ -15,7 +15,7 @@ WATCHED = ["panel", "rig", "cut_axis", "slicing"]
 
 
 def watch(session: Session) -> None:
-    """Let the plane follow its handles, which are there while there is a plane."""
+    """Connect the plane to its handles, which exist while there is a plane."""
     session.view.listen("cut", lambda message: put(session, message["origin"], message["normal"]))
     session.state.param.watch(lambda *events: show_handles(session), WATCHED)
 

@@ -13,9 +13,9 @@ from .session import Session
 
 WAVE_SECONDS = 6.0
 SHOWN = ["panel", "binding", "joint", "edge_colors", "vertex", "cut_axis", "graph_face"]
-"""What a field's being wanted depends on."""
+"""Choices that decide whether a field is needed."""
 BUILT = ["graph_resolution", "resolution", "connectivity", "winding_threshold", "orient"]
-"""What the graph that is shown depends on, besides the mesh."""
+"""Choices that the shown graph depends on, besides the mesh."""
 BESIDE = [*(f"beside_{name}" for name in MEASURES), "beside_resolution"]
 
 
@@ -103,7 +103,7 @@ def find_errors(session: Session) -> None:
 
 
 def find_measured(session: Session) -> None:
-    """Compute the next of the measures side by side that is not there, unless that goes on."""
+    """Compute the next missing measure of those side by side, unless that runs already."""
     state, jobs = session.state, session.tasks.jobs("measures")
     if state.panel != "distance" or not has_field(state) or jobs.running:
         return

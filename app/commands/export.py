@@ -79,7 +79,7 @@ class Seen:
 
 
 def queued(export: Callable[..., None]) -> Callable[..., None]:
-    """Let an export wait until the page has the weights of the settings that it shows."""
+    """Delay an export until the page has the weights of the settings that it shows."""
 
     @wraps(export)
     def export_later(session: Session, *arguments: Any, **options: Any) -> None:
@@ -232,7 +232,7 @@ def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
 def _draw(
     session: Session, ending: str, done: Done, order: Callable[[Seen, Progress], Order]
 ) -> None:
-    """Draw what is seen now; describing a large character takes a while, too."""
+    """Draw what is seen now; describing a large character is slow, too."""
     snapshot = Seen.now(session)
     stage = "drawing the picture" if ending == "png" else "drawing the film"
 
@@ -254,7 +254,7 @@ def _hand_over(
     done: Done,
     slots: Slots = COMPUTING,
 ) -> None:
-    """Let a file be written, and hand over its name and content; nothing of it stays."""
+    """Write a file, and return its name and content; nothing of it stays on the disk."""
     place = session.folder
 
     def work(progress: Progress) -> bytes:

@@ -13,7 +13,7 @@ from ..state.url import NOTED, simple, snapshot, to_query
 from .session import Session
 
 RESULT = ("rig", "own", "repair")
-"""What changes the result beside the choices: other joints that deform, repaired faces."""
+"""Changes of the result besides the choices: other joints that deform, repaired faces."""
 
 
 def watch(session: Session) -> None:
@@ -25,7 +25,7 @@ def watch(session: Session) -> None:
 
 
 def begin(session: Session, before: str) -> None:
-    """Begin anew, with a new character, or go on with one that somebody went back to.
+    """Begin the history of a new character, or continue that of one restored by *Back*.
 
     Parameters
     ----------

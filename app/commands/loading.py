@@ -42,7 +42,7 @@ def load_demo(
     chosen : callable
         Chooses more, together with the character.
     then : callable
-        Called when it stands there.
+        Called when the character is open.
     """
     session.state.demo = id
     title = next(demo.title for demo in DEMOS if demo.id == id)

@@ -12,7 +12,7 @@ from .session import Session
 
 
 def watch(session: Session) -> None:
-    """Let the view follow the state, and the state what is picked in the view."""
+    """Connect the view to the state, and the state to picks in the view."""
     state, view = session.state, session.view
     drawn = {"brush", "brush_selection"}
     watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]

@@ -18,7 +18,7 @@ def watch(session: Session) -> None:
 
 
 def find(session: Session) -> None:
-    """Read the materials of the character that stands there, if they are wanted and not known."""
+    """Read the materials of the open character, if they are needed and not read yet."""
     state = session.state
     rig = state.rig
     is_current = state.materials is not None and rig is not None and state.materials[0] is rig.mesh

@@ -23,12 +23,12 @@ from .correct import check_alone, correct
 from .session import Session
 
 DIGITS = 6
-"""Of places, beside the longest side of the character: addresses are long enough."""
+"""Decimal places of positions in addresses, relative to the longest side of the character."""
 SEEN = ["panel", "rig", "binding", "joint", "joint_handle", "mirrored"]
 
 
 def watch(session: Session) -> None:
-    """Let the handle follow the chosen joint, and joints the handle."""
+    """Connect the handle to the chosen joint, and joints to the handle."""
     follow = session.state.param.watch
     hand = Hand(session)
     session.view.listen("joint", hand.move)

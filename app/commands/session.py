@@ -52,7 +52,7 @@ class View(Protocol):
         """Return the last value sent for a part; None if none was."""
 
     def offer(self, name: str, content: bytes) -> None:
-        """Let the browser save a file."""
+        """Send a file to the browser, which saves it."""
 
     def answer(self, **message: Any) -> None:
         """Answer a request of the browser."""
@@ -74,10 +74,10 @@ class Session:
     memo : Memo
     history : History
     restoring : bool
-        Whether choices of the past are being restored: they are not noted anew.
+        Whether choices of the past are being restored: they are not recorded again.
     uploads : PageUploads
     character : str
-        What opens the character that stands there again: "demo" and its id, or "~" and the key of
+        Key that opens the current character again: "demo" and its id, or "~" and the key of
         uploaded files ("" for those of this machine); empty where nothing does.
     given : list of Path
         Files of this machine that the page was opened with.

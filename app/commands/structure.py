@@ -15,7 +15,7 @@ from .moving import mirror_of, moves_along, rounded
 from .session import Session
 
 BEYOND = 0.5
-"""Of the bone before it: how far behind a last joint the next one is added."""
+"""Length of the bone to a joint that is added behind a last one, relative to the bone before it."""
 
 
 def add(session: Session) -> None:

@@ -41,7 +41,7 @@ def fit(session: Session, template: Template) -> None:
 
 
 def take_out(session: Session) -> None:
-    """Leave the mesh without a skeleton again."""
+    """Remove the fitted skeleton."""
     changed = corrected_state(session, Corrections())
     session.state.param.update(**{**changed, "panel": "graph"})
 

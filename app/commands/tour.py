@@ -50,7 +50,7 @@ def go(session: Session, index: int, url_values: frozenset[str] = frozenset()) -
 
 
 def leave(session: Session) -> None:
-    """Leave the tour; the character, the choices and the camera are those from before it.
+    """End the tour, and restore the character, the choices and the camera.
 
     A character that a person opened on the tour stays, with its choices.
     """

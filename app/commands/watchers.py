@@ -24,7 +24,7 @@ from .session import Session
 
 
 def follow(session: Session) -> None:
-    """Let everything follow the state of a new session."""
+    """Connect everything to the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
     watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs, rendered)
     for one in (*watched, binding, export_queue, explain, history, keys, idle, check, arrival):

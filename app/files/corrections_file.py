@@ -7,7 +7,7 @@ from ..state.corrections import MAX_IN_ADDRESS, MAX_VERTICES, from_text, to_text
 from .upload_cache import Group, PageUploads
 
 KEY = "~"
-"""What a key begins with; no text of corrections does."""
+"""Prefix of keys; no text of corrections begins with it."""
 
 
 class CorrectionsFile:

@@ -57,7 +57,7 @@ def load_with_materials(path: Path) -> Rig:
 
 
 def frozen(rig: Rig) -> Rig:
-    """Let nothing write to a rig that was copied, as to one that was made."""
+    """Make the arrays of a copied rig read-only, as those of a new one are."""
     meshes, motions = [one.mesh for one in rig.attachments], [clip.motion for clip in rig.clips]
     for part in (rig, rig.mesh, rig.skeleton, *meshes, *motions):
         for value in vars(part).values():

@@ -14,7 +14,7 @@ MAX_UPLOAD = 200 * 1024 * 1024
 MAX_FILES = 64
 
 NAME_BYTES = 200
-"""Of a file's name: most systems take 255, and what is made of the file has a longer one."""
+"""Longest name of a file: most systems take 255, and exports of the file have longer names."""
 
 
 class Receiver:

@@ -24,7 +24,7 @@ DIGITS = 7
 
 
 ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
-"""What made the numbers of a file, and their unit."""
+"""Source of the numbers of a file, and their unit."""
 
 
 def settings_of(result: Binding | CutCellGraph) -> dict[str, Any]:

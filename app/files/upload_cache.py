@@ -1,7 +1,7 @@
 """Uploaded files: stored while a page uses them, and some time longer for returning visitors.
 
-All of them together have a quota, and so have those of one page. What nobody uses any more makes
-way for what is sent.
+All of them together have a quota, and so have those of one page. Files that are no longer in use
+are removed for new ones.
 """
 
 import atexit
@@ -22,11 +22,11 @@ KEPT_SECONDS = 15 * 60.0
 
 MB = 2**20
 MAX_BYTES = 2048 * MB
-"""Of all uploaded files together."""
+"""Quota of all uploaded files together."""
 MAX_OF_A_PAGE = 500 * MB
-"""Of those that one page has sent and that are still there."""
+"""Quota of the files of one page that still exist."""
 SPARE_BYTES = 256 * MB
-"""What uploads leave free on the disk, for others."""
+"""Space that uploads leave free on the disk."""
 
 SWEEP_SECONDS = 60.0
 
@@ -183,7 +183,7 @@ class UploadCache:
             )
 
     def _make_room(self, size: int, most: int, owner: object = None) -> int:
-        """Remove what nobody uses, the oldest first, until a size fits; return what is held."""
+        """Remove unused files, the oldest first, until a size fits; return the size of the rest."""
         groups = [one for one in self._groups.values() if owner in (None, one.owner)]
         used = sum(group.size for group in groups)
         unused = (group for group in groups if group.users <= 0)
@@ -215,7 +215,7 @@ class PageUploads:
     Attributes
     ----------
     key : str
-        Of the character that stands there; empty where it was not uploaded.
+        Key of the open character; empty where it was not uploaded.
     listed : dict of str to str
         The keys of the characters that stood there, and what they are called, in order.
     """
@@ -241,7 +241,7 @@ class PageUploads:
         return paths
 
     def stay(self, key: str, name: str = "") -> None:
-        """Let the character of some files stand there, and use no others; "" for none.
+        """Use the files of the open character and no others; "" for none.
 
         It can be chosen again by its name, if it has one.
         """
@@ -253,7 +253,7 @@ class PageUploads:
             self.leave(other)
 
     def leave(self, key: str) -> None:
-        """Use files no longer, unless their character stands there."""
+        """Stop using files, unless their character is open."""
         if key in self._in_use and key != self.key:
             self._in_use.remove(key)
             self.cache.leave(key)
@@ -267,7 +267,7 @@ class PageUploads:
         self._closing.append(act)
 
     def close(self) -> None:
-        """Let go of what was uploaded, and of what is still being sent."""
+        """Release uploaded files, and those that are still being sent."""
         self.stay("")
         for key in self.listed:
             self.cache.list(key, -1)

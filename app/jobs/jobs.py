@@ -16,10 +16,10 @@ Schedule = Callable[[Callable[[], Any]], Any]
 """Runs a function later, on the thread that owns the page."""
 
 PATIENCE = 1.0
-"""Seconds that others wait for work that was stopped, and goes on because it does not look."""
+"""Seconds that others wait for cancelled work that has not noticed it yet."""
 
 MAX_UNRESPONSIVE = 3
-"""How many such jobs may go on beside those that are wanted; then others wait all the same."""
+"""Largest number of such jobs beside those that are needed; then others wait nevertheless."""
 
 
 class Slots:
@@ -229,7 +229,7 @@ class Jobs:
 
 
 class Newest:
-    """Work that begins again while it goes on: one at a time, and then only what was asked last.
+    """Work that is requested again while it runs: one at a time, and next only the last request.
 
     Requests of a dragged slider would otherwise pile up, since running work does not check if it
     is still wanted.
@@ -247,7 +247,7 @@ class Newest:
         self._next: tuple[Callable[[Progress], Any], Callable[[Any], None]] | None = None
 
     def do(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
-        """Do some work, now or after what goes on; `done` runs on the page's thread."""
+        """Do some work, now or after the running one; `done` runs on the page's thread."""
         if self._jobs.running:
             self._next = (work, done)
             return
@@ -264,7 +264,7 @@ class Newest:
         self._jobs.start(work, *ends, silent, DESCRIBING)
 
     def cancel(self) -> None:
-        """Stop what goes on, and forget what waits."""
+        """Cancel the running work, and drop the waiting one."""
         self._next = None
         self._jobs.cancel()
 

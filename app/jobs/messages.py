@@ -10,7 +10,7 @@ from cutcell.runtime.display import printable, without_folders
 ROOT = Path(__file__).resolve().parents[2]
 
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
-"""What systems say of a disk that has no room, or none for this person."""
+"""Errors of systems for a disk that is full, or full for this user."""
 
 KEPT = "Nothing was changed"
 

@@ -166,7 +166,7 @@ def warning(state: State) -> tuple[str, str] | None:
 
 
 def stage_text(stage: str) -> str:
-    """Return the text of a stage for people."""
+    """Return the text of a stage."""
     return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
 
 

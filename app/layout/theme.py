@@ -27,7 +27,7 @@ _SHEET = {
 }
 
 FOCUS = {"outline": "2px solid #e05a00", "outlineOffset": "1px"}
-"""What has the focus of the keyboard looks like this everywhere; the style sheets say the same."""
+"""Outline of the element with keyboard focus, as in the style sheets."""
 
 _NO_RIPPLE = {"defaultProps": {"disableFocusRipple": True}}
 """Focus is an outline that stays, and no pulse."""
@@ -102,6 +102,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
-    # How high the sheet is that stands there now: frontend/sheet.js.
+    # Height of the open sheet: frontend/sheet.js.
     NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

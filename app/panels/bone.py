@@ -14,7 +14,7 @@ TOGGLES = (
     ("faint_skeleton", "opacity", "water_drop", "Fade the bones"),
     ("wireframe", "grid_off", "grid_on", "Show the wireframe"),
 )
-"""What can be switched beside the bone: a choice, its icons off and on, and what it does."""
+"""Switches beside the bone: choice, icons off and on, and help."""
 
 
 def bone(session: Session) -> pmui.Column:

@@ -36,9 +36,9 @@ MAX_DETAILS = 8
 SAME = 1e-9
 """Weights that differ by less are equal."""
 OF_PARTS = ("boneless-components", "unreachable-vertices")
-"""What can be mended by a choice of what parts of the mesh follow."""
+"""Findings mended by choosing what parts of the mesh follow."""
 LEFT_OUT = ("stray-weights", "joints-outside")
-"""What is mended by joints that are locked or excluded."""
+"""Findings mended by locking or excluding joints."""
 
 
 def check(session: Session) -> pmui.Column:
@@ -199,7 +199,7 @@ def _part_choices(session: Session, finding: Finding) -> list[pmui.Button]:
 
 
 def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Button]:
-    """Return buttons that lock joints that move a part of their own, and exclude the others."""
+    """Return buttons that lock joints with an own part of the mesh, and exclude the others."""
     rig = session.state.rig
     joints = joints[rig.skeleton.deform[joints]]
     moves = np.zeros(len(joints), bool)

@@ -127,7 +127,7 @@ def joint_title(rig: Rig, joint: int) -> str:
 
 
 def offer(select: pmui.Select, names: Sequence[str], index: int) -> None:
-    """Let a menu offer names, which `unique_names` made, and show one of them.
+    """Offer names, which `unique_names` made, in a menu, and select one of them.
 
     Names, not indices, are its values: an index that stays would keep the name that it had. And
     at once: a menu whose value changes twice in a moment may tell the first one back.
@@ -152,7 +152,7 @@ def follow(
     offered: Callable[[], tuple[dict[str, Any], Any]],
     watched: Sequence[str],
 ) -> Any:
-    """Let a menu show a parameter of the state, and set it.
+    """Connect a menu to a parameter of the state.
 
     `offered` returns the menu's choices and the chosen one; it is called again whenever the
     parameter or one of those watched changes.

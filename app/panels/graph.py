@@ -42,7 +42,7 @@ SEARCHED = (
     "Interior edges only carry the search: paths run straight along lines of sight. Click the "
     "body to see them."
 )
-"""What interior edges are where paths need not follow them."""
+"""Description of interior edges where paths need not follow them."""
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 

@@ -17,7 +17,7 @@ from .controls import BESIDE, button, caption, row, switch, text_box
 
 NUMBER = "%.6g"
 NOTHING = 1e-9
-"""Of the longest side."""
+"""Largest move, relative to the longest side, that is ignored."""
 
 
 def place(session: Session) -> list[Any]:

@@ -39,7 +39,7 @@ AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
 SWING = "Swing the bone"
 FEW_NOTES = 3
-"""Of what could not be read of materials, told one by one."""
+"""Largest number of faults of materials that are listed one by one."""
 WORST = 8
 """How many of the worst turns are listed."""
 

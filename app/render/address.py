@@ -18,7 +18,7 @@ OPTIONS = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
     "skeleton": ("skeleton",), "bone": ("weights_shown", "compare_field"),
 }  # fmt: skip
-"""The choices of the page that options of the command stand for."""
+"""Choices of the page that correspond to options of the command."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ VIEWS = {
     "back": (0.0, 0.06, -1.0),
     "top": (0.0, 1.0, 0.02),
 }
-"""Where one can look from; left and right are the character's own."""
+"""Directions of view; left and right are the character's own."""
 
 TURN_AXES = ("x", "y", "z")
 

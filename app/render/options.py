@@ -19,7 +19,7 @@ LAYERS = {
     "surface": "surface_edges",
     "nodes": "nodes",
 }
-"""What layers of the graph are called here, and in the state."""
+"""Names of the layers of the graph as options, and in the state."""
 
 FACES = {"open": "open", "distance": "field", "winding": "winding"}
 AXES = ("x", "y", "z")
@@ -147,4 +147,4 @@ READERS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "wave": lambda part: {"wave": True, "front": part},
     "measures": _measures,
 }
-"""What turns each option into choices of the page."""
+"""Functions that turn each option into choices of the page."""

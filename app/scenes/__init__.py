@@ -19,7 +19,7 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
 """The scene of each panel, for a state with a rig."""
 
 RIGID = "parts fixed to one bone"
-"""What is said of the grey parts of a body whose colours tell something."""
+"""Legend of the grey parts of a coloured body."""
 
 
 def resolve(state: State, memo: Memo | None = None) -> Description:

@@ -35,7 +35,7 @@ KINDS = {
     "interior_edges": "interior: thick lines, squares",
     "surface_edges": "surface: dashed lines, triangles",
 }
-"""The kinds of edges, and how they and their nodes are told apart."""
+"""Kinds of edges, and the colours of these and of their nodes."""
 X_RAY = 0.5
 """How opaque each edge inside is where nothing is cut."""
 SHELL = 0.5

@@ -16,7 +16,7 @@ from ..state import State
 from .memo import Memo
 
 STRAY = 0.002
-"""Of the skin: what holds more in the file is no control, whatever its name says."""
+"""Share of the skin: a joint that holds more in the file is no control, whatever its name."""
 
 
 def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]:

@@ -22,7 +22,7 @@ from .weights import selection_marks, weights_look, weights_seen
 SWING_DEGREES = 50.0
 GHOST_OPACITY = 0.38
 MAX_NUMBERS = 2**22
-"""Of a motion, sent to the browser (16 MB): a long one of many joints has fewer frames there."""
+"""Largest motion that is sent to the browser (16 MB): a longer one is sent with fewer frames."""
 TOGETHER = 64
 """Frames that are sampled at a time."""
 VIEWS = ("cutcell", "Weights from the file")

@@ -27,11 +27,11 @@ from .explain import explained_paths
 from .memo import Memo
 
 DIFFERENCES = ("difference", "bone_difference")
-"""What tells two sides apart."""
+"""Words that distinguish two sides."""
 BODY_OPACITY_WITH_PATHS = 0.42
 """How opaque the body is while paths inside it are to be seen."""
 FILES = "In the file"
-"""What the legend begins with where it is of the file's own weights."""
+"""Beginning of the legend of the file's own weights."""
 
 
 def weights(state: State, memo: Memo) -> Description:

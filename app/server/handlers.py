@@ -46,7 +46,7 @@ KEPT_SECONDS = 365 * 24 * 3600
 """How long browsers keep files whose address tells their version."""
 
 TOKEN = "token-of-the-session"
-"""Stands in the page's text for what each visitor gets of their own."""
+"""Placeholder in the page's text of the part that differs for each visitor."""
 
 PLAIN = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>cutcell</title>
 <meta name="viewport" content="width=device-width">
@@ -60,7 +60,7 @@ def guard(
     static: Mapping[str, str] | None = None,
     head: str = "",
 ) -> PageText:
-    """Let a server answer only whom it should; return the text that it answers with.
+    """Restrict a server to permitted visitors; return the text of its page.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ class SocketHandler(WSHandler):
         return check_allowlist(urlparse(origin).netloc.lower(), list(self._hosts))
 
     async def _async_open(self, token: str) -> None:
-        if self.ws_connection is not None:  # else it is gone already, and nobody would end it
+        if self.ws_connection is not None:  # else it has ended already
             await super()._async_open(token)
 
     def _refuse(self, status: int, sentence: str) -> None:

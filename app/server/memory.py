@@ -28,7 +28,7 @@ def detach_from_panel(page: object) -> None:
 
 
 def settle() -> None:
-    """Leave what lives as long as the server out of later collections: they stop all threads."""
+    """Exclude objects that live as long as the server from collections, which stop all threads."""
     gc.collect()
     gc.freeze()
 

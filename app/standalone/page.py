@@ -45,9 +45,9 @@ from ..widgets.view import SceneView
 from .packed import Packed
 
 VIEWS = ("weights", "distance", "graph")
-"""What the page can show, by the names of the panels."""
+"""Panels that the page can show, by name."""
 MAX_CLIP_NUMBERS = 2**21
-"""Of all clips, so that long motions do not outweigh the character."""
+"""Largest size of all clips, so that long motions do not outweigh the character."""
 IMPORT = re.compile(r'from "\./(\w+)\.js"')
 
 

@@ -50,7 +50,7 @@ class State(
 
     @property
     def quick(self) -> bool:
-        """Whether what stands there is small enough to be described at once."""
+        """Whether the open character is small enough to be described at once."""
         if self.rig is None:
             return True
         if self.cut_across != "off" and PANELS[self.panel].cuts:
@@ -61,7 +61,7 @@ class State(
         return mesh_size <= QUICK_MESH and graph_size <= QUICK_GRAPH
 
     def snapshot(self) -> Any:
-        """Return all of it as it is now, for a thread that takes its time to look at it."""
+        """Return a copy of all values, for another thread."""
         kinds = [kind for kind in type(self).__mro__ if kind.__module__.startswith(__name__)]
         worked_out = {
             name: getattr(self, name)

@@ -13,7 +13,7 @@ from cutcell.editing.stroke import BrushMode
 from cutcell.rig import TriangleMesh
 
 MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
-"""Of the character's longest side."""
+"""Radius of the brush, relative to the character's longest side."""
 MIN_STRENGTH = 0.05
 
 

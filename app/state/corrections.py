@@ -18,9 +18,9 @@ from cutcell.rig import Rig
 MAX_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""
 MAX_VERTICES = 300
-"""Overruled ones: more are not even tried to be written so short, which takes a while."""
+"""Largest number of overruled vertices that are written into an address."""
 MAX_BYTES = 4 * 2**20
-"""Of corrections as JSON: some characters are overruled vertex by vertex."""
+"""Longest corrections as JSON in an address: some characters are overruled vertex by vertex."""
 
 
 class CorrectionsChoices(param.Parameterized):

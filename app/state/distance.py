@@ -26,7 +26,7 @@ MEASURES: dict[Measure, str] = {
     "any": "Any angle",
     "converged": "Converged",
 }
-"""What measures of a distance are called."""
+"""Names of the measures of distance."""
 
 
 class GeodesicsChoices(param.Parameterized):

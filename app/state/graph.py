@@ -86,7 +86,7 @@ class GraphChoices(param.Parameterized):
 
     @property
     def graph_inputs(self) -> tuple[Any, ...] | None:
-        """What the graph that is shown is built from; None where it is the one of the weights."""
+        """Method of the shown graph; None where it is the one of the weights."""
         state: Any = self
         if self.graph_resolution in (0, self.resolution) or state.rig is None:
             return None

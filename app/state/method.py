@@ -6,10 +6,10 @@ import cutcell
 from cutcell.method import GraphOptions, WeightOptions
 
 GRAPH = ("resolution", *GraphOptions.__annotations__, "leaf")
-"""What distances are measured again for."""
+"""Parameters whose change needs new distances."""
 
 WEIGHTS = tuple(WeightOptions.__annotations__)
-"""What changes weights without measuring any distance again."""
+"""Parameters whose change needs new weights, but no new distances."""
 
 
 def default(name: str) -> Any:
@@ -19,7 +19,7 @@ def default(name: str) -> Any:
 
 
 def effective(options: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what the falloff does not use, which the core refuses."""
+    """Drop options that the falloff does not use, which the core refuses."""
     unused = "refine" if options["falloff"] == "paper" else "alpha"
     return {name: value for name, value in options.items() if name != unused}
 

@@ -16,10 +16,10 @@ from .tour import TOUR
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "node", "part",
                  "animating", "joint_handle", "measuring_errors"}) | BRUSH  # fmt: skip
-"""What goes with one person or one moment, or has a word of its own in the address."""
+"""Parameters that belong to one person or moment, or have another word in the address."""
 
 NOTED = ("joint", "turns", "clip", "methods", "minus", "corrections")
-"""What is chosen, too, but only means something on the character that stands there."""
+"""Choices that only apply to the open character."""
 
 FORMER_PANELS = {"geodesics": "distance", "diagnosis": "check"}
 """Names of panels in older addresses, and their names today."""
@@ -56,7 +56,7 @@ def to_query(
     ----------
     state : State
     upload_key : str
-        The key of an uploaded character, where one stands there.
+        Key of the uploaded character, if one is open.
     camera : list of 6 float, optional
         Where the eye is and what it looks at; left out where it is as at the start.
     corrections : str

@@ -17,7 +17,7 @@ def _version() -> str:
 
 
 ADDRESS = f"scripts-{_version()}"
-"""Of the folder, relative to the page."""
+"""Address of the folder, relative to the page."""
 
 STATIC = {ADDRESS: str(FOLDER)}
 """For `guard`, or for `panel.serve(static_dirs=...)`."""

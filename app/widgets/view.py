@@ -90,7 +90,7 @@ class SceneView(JSComponent):
         return self._parts.get(name)
 
     def offer(self, name: str, content: bytes) -> None:
-        """Let the browser save a file."""
+        """Send a file to the browser, which saves it."""
         self._send_msg({"download": {"name": name, "content": content}})
 
     def answer(self, **message: Any) -> None:
