@@ -17,7 +17,7 @@ from .controls import BESIDE, button, caption, row, switch, text_box
 
 NUMBER = "%.6g"
 NOTHING = 1e-9
-"""Largest move, relative to the longest side, that is ignored."""
+"""Coordinates below this, relative to the longest side, are shown as zero."""
 
 
 def place(session: Session) -> list[Any]:
