@@ -161,6 +161,16 @@ def test_packages_of_the_core_use_only_those_before_them():
     assert wrong == []
 
 
+def test_reading_gltf_needs_no_writing():
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {name}"
+        for path in sorted((ROOT / "cutcell/io/gltf").rglob("*.py"))
+        for name, line in imports_of(path)
+        if path.parent.name != "write" and name.startswith("cutcell.io.gltf.write")
+    ]
+    assert wrong == []
+
+
 def test_no_modules_of_the_core_import_each_other():
     """Imports in functions, and those for type checkers alone, count as well."""
     names = {".".join((*package_of(path), path.stem)): path for path in core_files()}

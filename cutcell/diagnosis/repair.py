@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.weld import weld
 from ..graph.lattice import Lattice
-from ..io.gltf.read.faces import with_faces, with_rescaled
+from ..io.gltf.write.faces import with_faces, with_rescaled
 from ..rig import Rig
 from ..weights.prune import prune
 from .cleaning import clean

@@ -20,8 +20,7 @@ from .gltf.write.write import rewritten
 from .materials.gltf_colored import color_notes
 from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
-from .scenes.fbx import read_fbx
-from .scenes.usd import USD, read_usd
+from .scenes.formats import SCENES, read_scene
 from .skeletons import with_skeleton
 
 __all__ = ["load", "save"]
@@ -95,10 +94,8 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
     if kind in MESHES:
         rig = rig_file(path) if kind == ".obj" and not bare else None
         return read_rignet(rig) if rig else read_soup(path, bare)
-    if kind == ".fbx":
-        return read_fbx(path, accessories)
-    if kind in USD:
-        return read_usd(path, accessories)
+    if kind in SCENES:
+        return read_scene(path, accessories)
     if kind in GLTF or read_bytes(path)[:4] == MAGIC:
         return read_gltf(path, accessories, bare)
     if kind == ".json":

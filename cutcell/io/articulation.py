@@ -19,10 +19,8 @@ from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Part, Rig, Skeleton, TriangleMesh
-from .allowance import Allowance
 from .deforming import KEY, with_deform
-from .files import one_line, read_bytes
-from .names import HALVES, has_halves, whole_characters
+from .files import HALVES, Allowance, has_halves, one_line, read_bytes, whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
 
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}

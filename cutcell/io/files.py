@@ -108,3 +108,67 @@ def _tried(names: Iterable[str]) -> Iterator[PurePosixPath]:
     for one in named:
         if one.name and one.name != ".." and ":" not in one.name:
             yield PurePosixPath(one.name)
+
+
+LEAST = 2**28
+PER_BYTE = 256
+"""Bytes that a file of no size, and each of its bytes, may take while it is read. Weights of a
+thousand joints for each vertex take some 200 times as much as what they are stored in."""
+
+
+class Allowance:
+    """The rest of the memory that a file may use.
+
+    A few bytes can ask for any amount: an accessor without data, one mesh that is used in a
+    thousand places, a header that announces more than follows.
+
+    Parameters
+    ----------
+    size : int
+        Bytes of the file, with all that belongs to it.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self._left: float = LEAST + PER_BYTE * size
+
+    def take_weights(self, vertices: int, joints: int) -> None:
+        """Count the bytes of a weight matrix."""
+        what = f"weights of {vertices:,} vertices for {joints:,} joints"
+        self.take(vertices * joints * 8.0, what)
+
+    def take(self, needed: float, what: str) -> None:
+        """Count bytes that are about to be taken."""
+        self._left -= needed
+        if self._left < 0:
+            raise FileError(
+                f"{what} would take {_readable(needed)} of memory, and a file of "
+                f"{_readable(self._size)} may take {_readable(LEAST + PER_BYTE * self._size)} "
+                "in all; it is damaged, or asks for more than it holds"
+            )
+
+
+def _readable(size: float) -> str:
+    for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if size >= factor:
+            digits = 0 if size >= 100 * factor else 1
+            return f"{size / factor:,.{digits}f} {unit}"
+    return f"{size:,.0f} bytes"
+
+
+def whole_characters(text: str) -> str:
+    """Return a text with � in place of each half of a character.
+
+    Characters beyond the first 65,536 are pairs of surrogates in UTF-16 and in JSON's escapes. A
+    surrogate alone is no character: UTF-8 cannot hold it, and many readers refuse JSON with it.
+    """
+    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+
+
+def has_halves(text: str) -> bool:
+    """Return whether a text has surrogates without their pair."""
+    return not text.isascii() and whole_characters(text) != text
+
+
+HALVES = "a name in it holds half of a character (a lone surrogate), for which � stands"
+"""The warning of a file with such names."""

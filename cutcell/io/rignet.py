@@ -16,10 +16,9 @@ import numpy as np
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Part, Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
-from .files import naming, read_text
+from .files import naming, read_text, whole_characters
 from .materials.obj_materials import ObjSource
 from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
-from .names import whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
 
 MAX_DIGITS = 20

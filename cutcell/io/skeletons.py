@@ -22,9 +22,8 @@ from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .meshes.skeleton_json import read_skeleton_json
 from .rignet import read_rignet_skeleton
 from .scenes.document import scene_document
-from .scenes.fbx import fbx_scene
+from .scenes.formats import SCENES, scene_arrays
 from .scenes.joints import scene_world
-from .scenes.usd import USD, usd_scene
 
 KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
 MARGIN = 0.1
@@ -101,8 +100,8 @@ def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] |
     if kind in (".glb", ".gltf", ".vrm"):
         with malformed():
             return _of_document(plain_document(path))
-    if kind == ".fbx" or kind in USD:
-        scene = fbx_scene(path) if kind == ".fbx" else usd_scene(path)
+    if kind in SCENES:
+        scene = scene_arrays(path)
         document = scene_document(scene, path, "cutcell", needs_mesh=False)
         bones = np.flatnonzero(scene["node_bones"]).tolist()
         return _of_document(document, bones, scene_world(scene))

@@ -126,7 +126,7 @@ def test_they_are_in_the_address_and_undone(posing, loop):
 
 
 def test_a_repaired_mesh_gets_its_own(posing, loop, rig):
-    from cutcell.io.gltf.read.faces import with_faces
+    from cutcell.io.gltf.write.faces import with_faces
 
     posing.state.pose_colors = "materials"
     settle(posing, loop)

@@ -23,8 +23,8 @@ import numpy as np
 
 import cutcell
 from cutcell.io.gltf.read import compressed as gltf_draco
-from cutcell.io.scenes import fbx, usd
-from cutcell.isolated.__main__ import TASKS, limit_memory
+from cutcell.io.scenes import formats as scenes
+from cutcell.isolated.__main__ import limit_memory
 from cutcell.isolated.run import WorkFailedError
 
 from .formats import READERS, Files
@@ -59,7 +59,7 @@ def describe(number: int) -> str:
 def check(number: int) -> None:
     """Load a case, play and save what could be loaded."""
     warnings.simplefilter("error")
-    for module in (fbx, gltf_draco, usd):
+    for module in (scenes, gltf_draco):
         module.run_isolated = _forked  # type: ignore[attr-defined]
     with tempfile.TemporaryDirectory() as folder:
         saved = number // len(NAMES) % SAVED == 0
@@ -109,7 +109,7 @@ def _ours(do: Any, names: list[str]) -> Any:
 
 
 def _forked(
-    task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
+    task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0, extra: str = ""
 ) -> dict[str, Any]:
     """Stand in for `run_isolated`: a copy of this process does the work, which starts at once."""
     read, write = os.pipe()
@@ -137,26 +137,21 @@ def _work(task: str, job: Mapping[str, Any], memory: int, pipe: int) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
         limit_memory(memory)
-        module, function = TASKS[task].split(":")
-        answer: Any = getattr(import_module(f"cutcell.isolated.{module}"), function)(**job)
+        module, function = task.split(":")
+        answer: Any = getattr(import_module(module), function)(**job)
     except (RuntimeError, ValueError, MemoryError) as error:
         answer = str(error) or type(error).__name__
     except BaseException as error:  # what ends the process by a traceback
-        answer = f"{who(task)} stopped: {type(error).__name__}: {error}"
+        answer = f"{task} stopped: {type(error).__name__}: {error}"
     with os.fdopen(pipe, "wb") as out:
         pickle.dump(answer, out)
     os._exit(0)
 
 
-def who(task: str) -> str:
-    """Name who failed."""
-    return f"the reader of {task}"
-
-
 def warm_up() -> None:
     """Import what is slow to import: a case is not to be blamed for that."""
     for task in ("draco", "fbx", "usd"):
-        import_module(f"cutcell.isolated.{TASKS[task].split(':')[0]}")
+        import_module(f"cutcell.isolated.{task}")
     for number in range(len(NAMES)):
         check(number)
 

@@ -17,20 +17,13 @@ from math import inf
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ...errors import FileError
-from .read.accessors import COMPONENTS
+from .constants import ARRAY_BUFFER, COMPONENTS
 
 ALIGNMENT = 8
-KINDS = {
-    1: pygltflib.SCALAR,
-    2: pygltflib.VEC2,
-    3: pygltflib.VEC3,
-    4: pygltflib.VEC4,
-    16: pygltflib.MAT4,
-}
+KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ACCESSOR_KEYS = ("indices", "inverseBindMatrices", "input", "output")
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
@@ -79,7 +72,7 @@ class BufferWriter:
         self,
         values: NDArray,
         preferred: int | None = None,
-        target: int | None = pygltflib.ARRAY_BUFFER,
+        target: int | None = ARRAY_BUFFER,
         bounds: bool = False,
     ) -> int:
         """Store an array and return its accessor: `preferred` if it was dropped.
@@ -106,7 +99,7 @@ class BufferWriter:
         Shapes: values (n, k).
         """
         rows = np.ascontiguousarray(values).view(np.uint8).reshape(len(values), -1)
-        if target == pygltflib.ARRAY_BUFFER:  # whose elements start on multiples of 4 bytes
+        if target == ARRAY_BUFFER:  # whose elements start on multiples of 4 bytes
             rows = np.pad(rows, ((0, 0), (0, -rows.shape[1] % 4)))
         view, content = self._array_view(accessor.get("bufferView"), values, rows.shape[1], target)
         accessor.pop("sparse", None)
@@ -130,7 +123,7 @@ class BufferWriter:
             self._free_views.discard(view)
             # An extension of the old view described the old bytes, such as their compression.
             used = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
-            if target == pygltflib.ARRAY_BUFFER:
+            if target == ARRAY_BUFFER:
                 used["byteStride"] = stride
             self.views[view] = used if target is None else {**used, "target": target}
             self._arrays[key] = view, bytearray()

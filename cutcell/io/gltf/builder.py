@@ -6,10 +6,10 @@ from copy import deepcopy
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from .buffer import BufferWriter
+from .constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
 
 # The default material of glTF is metal, which looks black without surroundings.
 PLAIN_MATERIAL = {
@@ -56,9 +56,7 @@ class GltfBuilder:
         """
         count = self.buffer.accessors[attributes["POSITION"]]["count"]
         kind = "<u2" if count <= np.iinfo(np.uint16).max else "<u4"
-        indices = self.buffer.store(
-            faces.reshape(-1, 1).astype(kind), target=pygltflib.ELEMENT_ARRAY_BUFFER
-        )
+        indices = self.buffer.store(faces.reshape(-1, 1).astype(kind), target=ELEMENT_ARRAY_BUFFER)
         primitive = {"attributes": attributes, "indices": indices, "material": 0}
         return self.add("meshes", {"name": name, "primitives": [primitive]})
 
@@ -83,7 +81,7 @@ class GltfBuilder:
         animation["samplers"].append(sampler)
 
     def floats(
-        self, values: NDArray, target: int | None = pygltflib.ARRAY_BUFFER, bounds: bool = False
+        self, values: NDArray, target: int | None = ARRAY_BUFFER, bounds: bool = False
     ) -> int:
         """Store an array as 32-bit floats and return its accessor."""
         with np.errstate(over="ignore"):  # readers refuse what becomes infinite

@@ -1,9 +1,8 @@
 """The glTF document and its bytes: the GLB container, data URIs, files beside it.
 
 The JSON is kept as it was parsed, so that whatever cutcell does not know (extensions,
-extras, empty lists) is still there when the document is written again. pygltflib's own
-loader fills its dataclasses instead, which loses such fields and takes seconds on a file
-with thousands of animation channels; its names for glTF's numbers are used throughout.
+extras, empty lists) is still there when the document is written again. Libraries that fill
+dataclasses instead lose such fields, and take seconds over thousands of animation channels.
 """
 
 from __future__ import annotations
@@ -18,14 +17,10 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import unquote
 
-import pygltflib
-
 from ...errors import FileError
-from ..allowance import Allowance
-from ..files import one_line, read_bytes
-from ..names import HALVES, whole_characters
+from ..files import HALVES, Allowance, one_line, read_bytes, whole_characters
 
-MAGIC = pygltflib.MAGIC
+MAGIC = b"glTF"
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A

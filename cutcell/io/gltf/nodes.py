@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import FileError, SkeletonError
 from ...rig.checks import LARGEST
@@ -163,6 +163,18 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )
     return [np.array(level, int) for level in levels[:-1]]
+
+
+def node_shifts(
+    local: NDArray[np.float64], parents: ArrayLike, frame_shifts: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return how far nodes are shifted in their parents' frames when frames move.
+
+    Shapes: local (k, 4, 4), parents (k,), frame_shifts (k, 3); returns (k, 3).
+    """
+    above = np.asarray(parents)
+    shifts = np.einsum("kab,kb->ka", local[:, :3, :3], frame_shifts)
+    return shifts - np.where(above[:, None] >= 0, frame_shifts[above], 0.0)
 
 
 def compose(translation: NDArray, rotation: NDArray, scale: NDArray) -> NDArray:

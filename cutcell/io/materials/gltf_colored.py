@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ...rig import Rig
 from ..gltf.buffer import BufferWriter
+from ..gltf.constants import ELEMENT_ARRAY_BUFFER
 from ..gltf.container import Document
 from ..gltf.read.accessors import find_accessor
 from .corners import Corners, join_corners, surface_piece
@@ -222,7 +222,7 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
             **primitive,
             "attributes": {name: at for name, at in named.items() if uses.get(name, True)},
             "indices": buffer.store(
-                corners, None if k else mesh.old["indices"], pygltflib.ELEMENT_ARRAY_BUFFER
+                corners, None if k else mesh.old["indices"], ELEMENT_ARRAY_BUFFER
             ),
             "material": group.material,
         })  # fmt: skip

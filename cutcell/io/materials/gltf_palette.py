@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.colors import linear
+from ..files import whole_characters
 from ..gltf.buffer import BufferWriter
-from ..names import whole_characters
 from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
 from .gltf_images import Embedded, embedded
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...errors import CutcellError
 from ...rig import Rig
-from ..gltf.bare import BareSource
 from ..gltf.container import Document
 from ..gltf.read.accessors import read_accessor
+from ..gltf.read.bare import BareSource
 from ..gltf.read.primitives import (
     StoredFaces,
     primitives,

@@ -11,8 +11,7 @@ import numpy as np
 
 from ...errors import FileError, SkeletonError
 from ...rig import Skeleton
-from ..files import naming, one_line, read_text
-from ..names import has_halves
+from ..files import has_halves, naming, one_line, read_text
 
 FIELDS = ("name", "position", "parent", "deform")
 

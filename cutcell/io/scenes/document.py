@@ -26,7 +26,7 @@ from ...runtime.display import listed
 from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
 from ..gltf.influences import sorted_influences, store_influences
-from ..gltf.read.stored_skins import mended_warning
+from ..gltf.read.skins import mended_warning
 from ..materials.surfaces import scene_surfaces
 from .joints import SceneSkin, scene_skins
 

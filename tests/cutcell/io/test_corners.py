@@ -11,7 +11,7 @@ from pxr import Sdf, Usd, UsdGeom
 from scipy.spatial import KDTree
 
 import cutcell
-from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.faces import with_faces
 from tests.cutcell.io.fbx_builder import (
     MESH,
     TIP,

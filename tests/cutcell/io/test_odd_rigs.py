@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
 from cutcell.io import check_output
-from cutcell.io.names import whole_characters
+from cutcell.io.files import whole_characters
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, column
 from tests.cutcell.io.gltf.test_gltf_fresh import check_valid, small_rig
 from tests.cutcell.io.gltf.test_gltf_layouts import Layout

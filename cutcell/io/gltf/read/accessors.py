@@ -6,21 +6,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ....errors import FileError
+from ..constants import COMPONENTS, WIDTHS
 from ..container import Document, whole
 
-COMPONENTS: dict[int, np.dtype] = {
-    pygltflib.BYTE: np.dtype("<i1"),
-    pygltflib.UNSIGNED_BYTE: np.dtype("<u1"),
-    pygltflib.SHORT: np.dtype("<i2"),
-    pygltflib.UNSIGNED_SHORT: np.dtype("<u2"),
-    pygltflib.UNSIGNED_INT: np.dtype("<u4"),
-    pygltflib.FLOAT: np.dtype("<f4"),
-}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 BYTES_PER_NUMBER = 8
 """Decoded; every accessor counts with them, since many can show the same bytes."""
 

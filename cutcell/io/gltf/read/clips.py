@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ....errors import FileError
 from ....rig.clip import Clip
+from ..constants import CUBICSPLINE, INTERPOLATIONS, LINEAR, STEP
 from ..container import Document
-from ..interpolation import sample
-from ..nodes import Nodes, compose
-from ..write.moves import node_shifts
+from ..nodes import Nodes, compose, node_shifts
 from .accessors import Accessor, find_accessor, read_accessor
 
 FRAMES_A_SECOND = 30
@@ -29,7 +27,6 @@ MAX_MATRICES, LEVEL = 2**22, 100
 chain of thousands of nodes is shown by fewer frames, too."""
 
 WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
-HOW = (pygltflib.ANIM_LINEAR, pygltflib.ANIM_STEP, pygltflib.ANIM_CUBICSPLINE)
 
 
 def read_clips(
@@ -81,11 +78,13 @@ class Track:
         left = left.clip(0, len(self.keys) - 1)
         right = np.minimum(left + 1, len(self.keys) - 1)
         values = (self._keyed(left), self._keyed(right))
-        return sample(self.keys[left], self.keys[right], *values, self.how, seconds, self.path)
+        return _interpolated(
+            self.keys[left], self.keys[right], *values, self.how, seconds, self.path
+        )
 
     def _keyed(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return the values at some keys, shape (f, c, width), or (f, c, 3, width)."""
-        if self.how != pygltflib.ANIM_CUBICSPLINE:
+        if self.how != CUBICSPLINE:
             return np.stack([one.decoded(at) for one in self.values.values()], axis=1)
         three = (3 * at[:, None] + np.arange(3)).ravel()
         values = [one.decoded(three).reshape(len(at), 3, -1) for one in self.values.values()]
@@ -166,7 +165,7 @@ class _Reader:
             sampler = samplers[at]
             if not isinstance(sampler, dict):
                 raise FileError(f"{label}: its sampler {at} is not an object")
-            how = sampler.get("interpolation", pygltflib.ANIM_LINEAR)
+            how = sampler.get("interpolation", LINEAR)
             keys, values = self._checked(sampler, how, path, label)
             track = groups.setdefault((sampler["input"], how, path), Track(keys, how, path, {}))
             track.values[self._tree.place[node]] = values
@@ -180,9 +179,9 @@ class _Reader:
         kind = "VEC4" if path == "rotation" else "VEC3"
         index: Any = sampler.get("output")
         values = find_accessor(self._document, index, kind, label)
-        if how not in HOW:
+        if how not in INTERPOLATIONS:
             raise FileError(f"{label}: the interpolation {how!r} is none of glTF's")
-        needed = len(keys) * (3 if how == pygltflib.ANIM_CUBICSPLINE else 1)
+        needed = len(keys) * (3 if how == CUBICSPLINE else 1)
         if len(values) != needed:
             raise FileError(
                 f"{label}: {len(keys)} keys need {needed} values, {len(values)} are there"
@@ -255,3 +254,47 @@ class _Subtree:
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]
         return world
+
+
+def _interpolated(
+    before: NDArray, after: NDArray, left: NDArray, right: NDArray, how: str, times: NDArray,
+    path: str,
+) -> NDArray:  # fmt: skip
+    """Interpolate channels with common keys.
+
+    Shapes: before, after (f,), left, right (f, c, width), times (f,); returns (f, c, width).
+    """
+    if how == STEP:
+        return left
+    span = after - before
+    u = np.divide(times - before, span, out=np.zeros(len(times)), where=span > 0)
+    u = u.clip(0, 1)[:, None, None]
+    if how == CUBICSPLINE:
+        return _hermite(left, right, span[:, None, None], u)
+    if path == "rotation":
+        return _slerp(left, right, u)
+    return left * (1 - u) + right * u
+
+
+def _hermite(a: NDArray, b: NDArray, span: NDArray, u: NDArray) -> NDArray:
+    """Cubic spline of the glTF specification, appendix C.5."""
+    u2, u3 = u * u, u * u * u
+    return (
+        (2 * u3 - 3 * u2 + 1) * a[:, :, 1]
+        + span * (u3 - 2 * u2 + u) * a[:, :, 2]
+        + (3 * u2 - 2 * u3) * b[:, :, 1]
+        + span * (u3 - u2) * b[:, :, 0]
+    )
+
+
+def _slerp(a: NDArray, b: NDArray, u: NDArray) -> NDArray:
+    """Interpolate quaternions along the shorter arc; nearly equal ones linearly."""
+    cosine = (a * b).sum(axis=-1, keepdims=True)
+    b = np.where(cosine < 0, -b, b)
+    angle = np.arccos(np.clip(np.abs(cosine), 0, 1))
+    sine = np.sin(angle)
+    near = sine < 1e-4
+    safe = np.where(near, 1, sine)
+    from_a = np.where(near, 1 - u, np.sin((1 - u) * angle) / safe)
+    from_b = np.where(near, u, np.sin(u * angle) / safe)
+    return from_a * a + from_b * b

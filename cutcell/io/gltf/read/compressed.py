@@ -12,14 +12,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ....errors import FileError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
+from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES, WIDTHS
 from ..container import Document, whole
-from .accessors import WIDTHS, component
+from .accessors import component
 from .primitives import attributes, primitives
 
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
@@ -199,7 +199,7 @@ class _Unpacking:
         faces = self.decoded[f"faces_{mesh}"].reshape(-1, 1)
         key = mesh, "indices"
         primitive["indices"] = self._fill(document, primitive.get("indices"), faces, key, user)
-        primitive["mode"] = pygltflib.TRIANGLES
+        primitive["mode"] = TRIANGLES
         count = None
         for name, unique in extension["attributes"].items():
             values = self.decoded.get(f"values_{mesh}_{unique}")
@@ -230,7 +230,7 @@ class _Unpacking:
         self.filled[index] = key
         values = _typed(values, accessor, name)
         is_index = key[1] == "indices"
-        target = pygltflib.ELEMENT_ARRAY_BUFFER if is_index else pygltflib.ARRAY_BUFFER
+        target = ELEMENT_ARRAY_BUFFER if is_index else ARRAY_BUFFER
         self.writer.append(accessor, values, target)
         if "min" in accessor or "max" in accessor:
             accessor.update(min=values.min(axis=0).tolist(), max=values.max(axis=0).tolist())
@@ -250,5 +250,5 @@ def _typed(values: NDArray, accessor: dict[str, Any], user: str) -> NDArray:
         if values.min() < most.min or values.max() > most.max:
             if not user.endswith("indices"):
                 raise FileError(f"{user}: its Draco data does not fit into {dtype.name}")
-            accessor["componentType"], dtype = pygltflib.UNSIGNED_INT, np.dtype("<u4")
+            accessor["componentType"], dtype = 5125, np.dtype("<u4")
     return values.astype(dtype)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ....errors import FileError, MeshError, WeightsError
 from ...weights import NO_WEIGHTS, ReadWeights, summed
+from ..constants import TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES
 from ..container import Document
 from .accessors import read_accessor
 
@@ -18,7 +18,7 @@ BYTES_PER_CORNER = 24
 """Of a triangle; in a strip or a fan each corner makes one."""
 BYTES_PER_SET = 4 * (8 + 8)
 """Of a vertex' joints and weights, as a list of influences."""
-DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
+DRAWS_TRIANGLES = (TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN)
 
 
 class Drawn(NamedTuple):
@@ -73,7 +73,7 @@ def attributes(primitive: dict[str, Any], user: str) -> dict[str, Any]:
 
 def draws_triangles(primitive: dict[str, Any]) -> bool:
     """Return whether a primitive is triangles, not points or lines."""
-    return primitive.get("mode", pygltflib.TRIANGLES) in DRAWS_TRIANGLES
+    return primitive.get("mode", TRIANGLES) in DRAWS_TRIANGLES
 
 
 def read_positions(document: Document, primitive: dict[str, Any], user: str) -> NDArray:
@@ -112,12 +112,12 @@ def read_faces(document: Document, primitive: dict[str, Any], count: int, user: 
     else:
         document.allowance.take(count * BYTES_PER_CORNER, user)
         corners = np.arange(count)
-    mode = primitive.get("mode", pygltflib.TRIANGLES)
-    if mode == pygltflib.TRIANGLES:
+    mode = primitive.get("mode", TRIANGLES)
+    if mode == TRIANGLES:
         if len(corners) % 3:
             raise MeshError(f"{user}: {len(corners)} corners do not make whole triangles")
         return corners.reshape(-1, 3)
-    if mode == pygltflib.TRIANGLE_STRIP:
+    if mode == TRIANGLE_STRIP:
         faces = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)
         faces[1::2, :2] = faces[1::2, 1::-1]
     else:

@@ -15,12 +15,11 @@ from ....errors import CutcellError, FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
 from ...weights import ReadWeights, sum_warnings
-from ..bare import read_bare
 from ..container import Document, read_document
 from ..deform import read_deform
 from ..nodes import Nodes
-from .added_skins import bind_to_bones
-from .attachments import bind_accessories, moved, read_attachments
+from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
+from .bare import read_bare
 from .clips import read_clips
 from .compressed import decompress_draco, decompress_meshopt
 from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name

@@ -1,12 +1,9 @@
-"""From glTF skins to one skeleton in one space.
-
-The space is the bind space of the first skin: there vertices have the positions of their accessor.
-A joint's rest position is where its inverse bind matrix comes from, inverse(IBM) · 0. If the
-matrix contradicts the joint's node, `read_skins` has replaced it.
-"""
+"""The skins of a glTF document: their joints, inverse bind matrices and vertices."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,10 +11,143 @@ from numpy.typing import NDArray
 
 from ....errors import FileError, SkeletonError
 from ....rig import Skeleton
-from ..binds import agreed, invertible
-from ..container import Document
+from ..binds import BoundSkin, agreed, invertible, mend, rest_world
+from ..container import Document, indices
 from ..nodes import Nodes
-from .stored_skins import mended_warning, read_skins
+from .accessors import read_accessor
+from .primitives import draws_triangles, joint_shares, primitives, read_positions
+
+
+@dataclass(frozen=True, eq=False)
+class StoredSkin:
+    """A skin as it is in a file."""
+
+    nodes: list[int]
+    """The node of each of its joints."""
+    bound: BoundSkin
+    has_binds: bool
+    """Whether it has inverse bind matrices; without them joints are where their nodes are."""
+
+    def votes(self, to_rig: NDArray) -> tuple[NDArray, NDArray]:
+        """Return where trusted joints say that the rig stands, and how much each counts.
+
+        Shapes: to_rig (4, 4); returns (k, 4, 4), (k,).
+        """
+        at = self.bound.trusted() if self.has_binds else []
+        return self.bound.skinning[at] @ np.linalg.inv(to_rig), self.bound.votes(at)
+
+    def stands(self, votes: Sequence[tuple[NDArray, NDArray]]) -> NDArray[np.float64]:
+        """Return the matrix from its bind space to the scene, by the votes of some skins."""
+        matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
+        bound, k = self.bound, self.bound.topmost()
+        topmost = None if k is None else bound.skinning[k]
+        if len(shares):
+            is_control = k is not None and not bound.is_held[k]
+            return rest_world(matrices, shares, topmost, is_control, bound.corners)
+        return np.eye(4) if topmost is None else topmost
+
+
+def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, StoredSkin]:
+    """Return skins, with other matrices where those of the file contradict the nodes."""
+    in_scene = set(nodes.in_scene())
+    stored = {}
+    for skin in skins:
+        users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
+        users = [i for i in users if i in in_scene] or users
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            stored[skin] = _read_skin(document, nodes, skin, users)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        mend([one.bound for one in stored.values() if one.has_binds])
+    for skin, one in stored.items():
+        bad = np.flatnonzero(~invertible(one.bound.inverse))
+        if len(bad):
+            raise SkeletonError(
+                f"{document.label('skins', skin)}: the inverse bind matrix of the joint "
+                f"{document.label('nodes', one.nodes[bad[0]])} cannot be inverted"
+            )
+    return stored
+
+
+def mended_warning(names: list[str]) -> str:
+    """Return the sentence about joints whose matrices were replaced, by their names."""
+    if len(names) == 1:
+        return (
+            f'the joint "{names[0]}" moves no vertex, and its inverse bind matrix contradicts its '
+            f"node; it is placed by its node"
+        )
+    return (
+        f"{len(names):,} joints move no vertex, and their inverse bind matrices contradict their "
+        f'nodes (the first is "{names[0]}"); they are placed by their nodes'
+    )
+
+
+def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) -> StoredSkin:
+    joints = _skin_joints(document, skin)
+    inverse, has_binds = _inverse_binds(document, skin, joints)
+    shares, corners = _vertices(document, nodes, users, len(joints))
+    nearest = [*nodes.nearest(set(joints)), -1]  # the last is above roots
+    number = {node: k for k, node in enumerate(joints)} | {-1: -1}
+    above = [nodes.parents[node] for node in joints]
+    relative = np.concatenate([nodes.relative_to(joints), np.eye(4)[None]])
+    bound = BoundSkin(
+        inverse,
+        shares,
+        nodes.world[joints],
+        relative[above] @ nodes.local[joints],
+        [number[nearest[node]] for node in above],
+        np.argsort(nodes.depth[joints], kind="stable").tolist(),
+        corners,
+    )
+    return StoredSkin(joints, bound, has_binds)
+
+
+def _vertices(
+    document: Document, nodes: Nodes, users: list[int], joints: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the sum of weights on each joint, (j,), and the corners of a box, (2, 3)."""
+    shares = np.zeros(joints)
+    corners = np.array([np.full(3, np.inf), np.full(3, -np.inf)])
+    for i in users:
+        mesh, user = nodes.raw[i]["mesh"], document.label("nodes", i)
+        for k, primitive in enumerate(primitives(document, mesh, user)):
+            if draws_triangles(primitive):
+                label = f"{document.label('meshes', mesh)}, primitive {k}"
+                positions = read_positions(document, primitive, label)
+                corners[0] = np.minimum(corners[0], positions.min(axis=0))
+                corners[1] = np.maximum(corners[1], positions.max(axis=0))
+                shares += joint_shares(document, primitive, joints, label)
+    return shares, corners if np.isfinite(corners).all() else np.zeros((2, 3))
+
+
+def _skin_joints(document: Document, skin: int) -> list[int]:
+    user = document.label("skins", skin)
+    joints = indices(document.items("skins")[skin], "joints", user)
+    if not joints:
+        raise SkeletonError(f"{user} has no joints")
+    for node in joints:
+        document.item("nodes", node, user)
+    twice = next((node for node, times in Counter(joints).items() if times > 1), None)
+    if twice is not None:
+        raise SkeletonError(f"{user} names {document.label('nodes', twice)} twice as a joint")
+    return joints
+
+
+def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[NDArray, bool]:
+    owner, user = document.items("skins")[skin], document.label("skins", skin)
+    same = np.tile(np.eye(4), (len(joints), 1, 1))
+    if "inverseBindMatrices" not in owner:
+        return same, False
+    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)
+    if len(stored) < len(joints):
+        raise SkeletonError(
+            f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
+        )
+    inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
+    inverse = inverse.copy()
+    is_finite = np.isfinite(inverse).all(axis=(1, 2))
+    inverse[is_finite, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
+    # Several joints that all have the identity have no matrices, as far as glTF goes.
+    return inverse, len(joints) == 1 or not np.array_equal(inverse, same)
 
 
 @dataclass(eq=False)

@@ -16,30 +16,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pygltflib
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ....errors import SkeletonError
 from ....rig import Rig
 from ..buffer import BufferWriter
+from ..constants import CUBICSPLINE
 from ..container import Document
-from ..nodes import Nodes
+from ..nodes import Nodes, node_shifts
 from ..read.accessors import read_accessor
 
 BINDS = "inverseBindMatrices"
 """The key of a skin."""
-
-
-def node_shifts(
-    local: NDArray[np.float64], parents: ArrayLike, frame_shifts: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return how far nodes are shifted in their parents' frames when frames move.
-
-    Shapes: local (k, 4, 4), parents (k,), own (k, 3); returns (k, 3).
-    """
-    above = np.asarray(parents)
-    shifts = np.einsum("kab,kb->ka", local[:, :3, :3], frame_shifts)
-    return shifts - np.where(above[:, None] >= 0, frame_shifts[above], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +175,7 @@ def _translations(
                 samplers.append(sampler)
             old = sampler.pop("output")
             values = read_accessor(loaded, old, "VEC3", label).astype(np.float64)
-            if sampler.get("interpolation") == pygltflib.ANIM_CUBICSPLINE:
+            if sampler.get("interpolation") == CUBICSPLINE:
                 values[1::3] += shifts[node]  # between the tangents
             else:
                 values += shifts[node]

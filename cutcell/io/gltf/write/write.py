@@ -23,9 +23,9 @@ from ..buffer import BufferWriter
 from ..container import ENDINGS, Document, json_bytes, pack_glb
 from ..deform import store_deform
 from ..influences import pack_influences, store_influences
-from ..read.faces import store_faces, take_faces
 from ..read.read import GltfSource, StoredPart
 from .buffer_file import buffer_file, relative_uri
+from .faces import store_faces, take_faces
 from .influence_rows import StoredRows, store_changed_rows, stored_rows
 from .moves import store_moves, take_moves
 from .structure import take_structure

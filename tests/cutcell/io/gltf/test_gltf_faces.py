@@ -10,7 +10,7 @@ import cutcell
 from cutcell.graph import inverted_faces
 from cutcell.io.gltf.container import read_document
 from cutcell.io.gltf.read.accessors import read_accessor
-from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.faces import with_faces
 from cutcell.rig import TriangleMesh
 from cutcell_assets import demo_path
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, column, two_skins

@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 import cutcell
 from cutcell.io.gltf.buffer import BufferWriter
 from cutcell.io.gltf.container import json_bytes, pack_glb
-from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.faces import with_faces
 from cutcell.io.materials.gltf_colored import split_at_seams
 from cutcell.io.materials.transfer import read_materials
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.faces import with_faces
 from cutcell.io.materials.face_colors import BLENDED, Layer
 from cutcell.io.materials.transfer import has_materials, read_materials
 from cutcell_viewers.materials import load_textures

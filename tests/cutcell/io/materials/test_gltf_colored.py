@@ -14,7 +14,7 @@ from PIL import Image
 
 import cutcell
 from cutcell.io import saving_notes
-from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.faces import with_faces
 from cutcell.io.materials.face_colors import BLENDED
 from cutcell.io.materials.transfer import has_materials, read_materials
 from cutcell.runtime.colors import linear, srgb

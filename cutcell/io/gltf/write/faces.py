@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ....geometry import triangles
 from ....rig import Rig, TriangleMesh
-from ..bare import BareSource
 from ..buffer import BufferWriter
-from .accessors import read_accessor
-from .primitives import StoredFaces
-from .read import GltfSource
+from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES
+from ..read.accessors import read_accessor
+from ..read.bare import BareSource
+from ..read.primitives import StoredFaces
+from ..read.read import GltfSource
 
 
 def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:
@@ -114,9 +114,9 @@ def store_faces(buffer: BufferWriter, replaced: list[NewFaces]) -> None:
         for name, values in new.arrays.items():
             is_index = name == "indices"
             owner = new.primitive if is_index else new.primitive["attributes"]
-            target = pygltflib.ELEMENT_ARRAY_BUFFER if is_index else pygltflib.ARRAY_BUFFER
+            target = ELEMENT_ARRAY_BUFFER if is_index else ARRAY_BUFFER
             owner[name] = buffer.store(values, new.old.get(name), target)
-        new.primitive["mode"] = pygltflib.TRIANGLES
+        new.primitive["mode"] = TRIANGLES
 
 
 def _normals(

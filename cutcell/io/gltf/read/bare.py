@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import MeshError
-from ...rig import Part, Rig, Skeleton, TriangleMesh
-from .container import Document
-from .nodes import Nodes
-from .read.parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
-from .read.primitives import StoredFaces, draws_triangles, primitives, read_triangles
+from ....errors import MeshError
+from ....rig import Part, Rig, Skeleton, TriangleMesh
+from ..container import Document
+from ..nodes import Nodes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
+from .primitives import StoredFaces, draws_triangles, primitives, read_triangles
 
 
 @dataclass(frozen=True, eq=False)
