@@ -1,7 +1,7 @@
 """FBX, binary and text, 6.1 to 7.7: read by ufbx, handed on as the arrays of a scene.
 
-`cutcell.io.scenes.document` says what the arrays are. ufbx' bindings let go of list elements too
-often: each list is walked once and kept (`fbx_kept`), and the process must end without cleaning up.
+ufbx' bindings let go of list elements too often: each list is walked once and kept (`kept`), and
+the process must end without cleaning up.
 """
 
 from __future__ import annotations
@@ -10,38 +10,30 @@ import numpy as np
 import ufbx
 
 from ..geometry.polygons import cut_polygons
-from .fbx_kept import keep, kept
-from .fbx_materials import FbxPalette, stored, surface
+from .fbx_materials import at_corners, kept, surface
+from .scene import Scene
 
 FRAMES_A_SECOND = 30.0
 
 
 def read(data):
-    """Read a file.
-
-    Shapes: data (b,).
-    """
+    """Read a file; shape data (b,)."""
     try:
-        scene = ufbx.load_memory(data.tobytes(), **options())
+        file = ufbx.load_memory(data.tobytes(), **options())
     except ufbx.UfbxError as error:
         raise RuntimeError(f"it is damaged ({error})") from None
-    keep(scene)
-    nodes = kept(scene.nodes)
+    kept([file])
+    scene, nodes = Scene(), kept(file.nodes)
     place = {node.element_id: i for i, node in enumerate(nodes)}
-    parents = [place[p.element_id] if (p := node.parent) else -1 for node in nodes]
-    arrays = {
-        "node_names": np.array([node.name for node in nodes], np.str_),
-        "node_parents": np.array(parents),
-        "node_transforms": np.array([transform(node.local_transform) for node in nodes]),
-        "node_hidden": np.array([not node.visible for node in nodes]),
-        "node_bones": np.array([node.attrib_type == ufbx.ElementType.BONE for node in nodes]),
-    }
-    names: list[str] = []
-    at: list[int] = []
+    for node in nodes:
+        parent = place[p.element_id] if (p := node.parent) else -1
+        is_bone = node.attrib_type == ufbx.ElementType.BONE
+        scene.add_node(
+            node.name, parent, transform(node.local_transform), not node.visible, is_bone
+        )
     blended: list[str] = []
     notes: list[str] = []
-    palette = FbxPalette()
-    for mesh in kept(scene.meshes):
+    for mesh in kept(file.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
             continue
@@ -56,21 +48,15 @@ def read(data):
             )
         if len(kept(mesh.blend_deformers)):
             blended.append(name)
+        skin = influences(skins, place) if skins else {}
         # A skin holds for one place of a mesh; other meshes may stand anywhere.
         for node in places[:1] if skins else places:
-            k = len(names)
-            names.append(node.name or mesh.name)
-            at.append(place[node.element_id])
-            arrays |= {f"mesh_{k}_{key}": value for key, value in shape.items()}
-            colours = surface(mesh, node, corners, polygons, palette)
-            arrays |= {f"mesh_{k}_{key}": value for key, value in colours.items()}
-            arrays[f"mesh_{k}_place"] = matrix(node.geometry_to_node)
-            if skins:
-                skin = influences(skins, place)
-                arrays |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
-    arrays |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
-    arrays |= {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
-    return arrays | palette.arrays() | clips(scene, place)
+            colours = surface(mesh, node, corners, polygons, scene)
+            arrays = shape | colours | {"place": matrix(node.geometry_to_node)} | skin
+            scene.add_mesh(node.name or mesh.name, place[node.element_id], arrays)
+    add_clips(scene, file, place)
+    told = {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
+    return scene.arrays() | told
 
 
 def options():
@@ -107,8 +93,7 @@ def geometry(mesh):
     corners, polygons = cut_polygons(points, vertices, counts)
     arrays = {"vertices": points, "faces": vertices[corners], "dropped": dropped(mesh)}
     if mesh.vertex_normal.exists and (not mesh.generated_normals or is_smoothed(mesh)):
-        values, indices = stored(mesh.vertex_normal)
-        arrays["normals"] = values[indices[corners]].astype(np.float32)
+        arrays["normals"] = at_corners(mesh.vertex_normal, corners).astype(np.float32)
     return arrays, corners, polygons
 
 
@@ -152,14 +137,11 @@ def influences(skins, place):
     }
 
 
-def clips(scene, place):
-    """Return every animation as keys of its nodes, from time 0 on, to be joined by lines."""
-    names: list[str] = []
-    tracks: list[tuple[int, ...]] = []
-    keys = [np.zeros((0, 5))]
-    for stack in kept(scene.anim_stacks):
+def add_clips(scene, file, place):
+    """Add every animation as keys of its nodes, from time 0 on, to be joined by lines."""
+    for stack in kept(file.anim_stacks):
         baked = ufbx.bake_anim(
-            scene,
+            file,
             stack.anim,
             trim_start_time=True,
             resample_rate=FRAMES_A_SECOND,
@@ -167,21 +149,11 @@ def clips(scene, place):
             key_reduction_enabled=True,
             key_reduction_rotation=True,
         )
-        keep(baked)
-        before = len(tracks)
+        kept([baked])
         for node in kept(baked.nodes):
             moves = (node.translation_keys, node.rotation_keys, node.scale_keys)
             for path, moved in enumerate(moves):
-                rows = [(key.time, *key.value) for key in moved]
-                if rows and node.element_id in place:
-                    values = np.zeros((len(rows), 5))
-                    values[:, : len(rows[0])] = rows
-                    keys.append(values)
-                    tracks.append((len(names), place[node.element_id], path, len(rows)))
-        if len(tracks) > before:
-            names.append(stack.name)
-    return {
-        "clip_names": np.array(names, np.str_),
-        "tracks": np.array(tracks, int).reshape(-1, 4),
-        "keys": np.concatenate(keys),
-    }
+                rows = np.array([(key.time, *key.value) for key in moved])
+                if len(rows) and node.element_id in place:
+                    scene.add_track(place[node.element_id], path, rows[:, 0], rows[:, 1:])
+        scene.end_clip(stack.name)

@@ -1,48 +1,35 @@
-"""What colours the meshes of an FBX: base colours, their images, and where corners lie in these.
-
-`cutcell.io.materials.surfaces` says what the arrays are.
-"""
+"""What colours the meshes of an FBX: base colours, their images, and where corners lie in these."""
 
 from __future__ import annotations
 
 import numpy as np
 import ufbx
 
-from .fbx_kept import keep, kept
-from .palette import Palette
+from .scene import upper_left
 
 LONGEST = 1000
 """Characters of an image's name that are handed on."""
 UNSEEN = 0.02
-"""Opacity of what nobody would model: many programs write 0 and mean 1."""
+"""Opacity treated as unset: many programs write 0 and mean 1."""
+KEEP: list[list] = []
+"""Elements of ufbx that must never be released: its bindings let go of them too often."""
 
 
-class FbxPalette(Palette):
-    """The materials of an FBX, by its elements."""
+def kept(elements):
+    """Return a list's elements; they stay as long as the process."""
+    KEEP.append(list(elements))
+    return KEEP[-1]
 
-    def __init__(self):
-        super().__init__()
-        self.textures: list = []
-        self._numbers: dict[int, int] = {}
 
-    def number(self, material):
-        """Return the number of a material, -1 for none."""
-        if material is None:
-            return -1
-        number = self._numbers.get(material.element_id)
-        if number is not None:
-            return number
-        keep(material)
-        texture = base_texture(material)
-        image = -1
-        if texture is not None:
-            names = (texture.relative_filename, texture.filename, texture.absolute_filename)
-            image = self.add_image(tuple(name[:LONGEST] for name in names), texture.content)
-        color, cut = base_color(material), is_cut(material)
-        number = self.add_material(material.name, color, opacity(material), image, cut)
-        self._numbers[material.element_id] = number
-        self.textures.append(texture)
-        return number
+def describe(scene, material):
+    """Describe a material for `Scene.material`; its reader is the texture."""
+    kept([material])
+    texture, image = base_texture(material), -1
+    if texture is not None:
+        names = (texture.relative_filename, texture.filename, texture.absolute_filename)
+        image = scene.add_image(tuple(name[:LONGEST] for name in names), texture.content)
+    color, cut = base_color(material), is_cut(material)
+    return material.name, color, opacity(material), image, cut, texture
 
 
 def base_texture(material):
@@ -51,7 +38,7 @@ def base_texture(material):
         texture = channel.texture
         if texture is None or not channel.texture_enabled:
             continue
-        keep(texture)
+        kept([texture])
         for one in [texture, *kept(texture.file_textures)]:
             if one.type == ufbx.TextureType.FILE and (one.filename or len(one.content)):
                 return one
@@ -88,51 +75,42 @@ def is_cut(material):
     return any(one.texture is not None and one.texture_enabled for one in maps)
 
 
-def surface(mesh, node, corners, polygons, palette):
-    """Return what colours the triangles of a mesh at a place.
-
-    Shapes: corners (m, 3), polygons (m,).
-    """
+def surface(mesh, node, corners, polygons, scene):
+    """Return what colours the triangles of a mesh at a node; corners (m, 3), polygons (m,)."""
     materials = kept(node.materials) or kept(mesh.materials)
-    numbers = np.array([*(palette.number(one) for one in materials), -1])
+    numbers = [
+        -1 if one is None else scene.material(one.element_id, lambda one=one: describe(scene, one))
+        for one in materials
+    ]
     which = np.array(list(mesh.face_material), int)
     which = which[polygons] if len(which) else np.zeros(len(polygons), int)
     has_material = (which >= 0) & (which < len(materials))
-    material = numbers[np.where(has_material, which, -1)]
+    material = np.array([*numbers, -1])[np.where(has_material, which, -1)]
     arrays = {"materials": material}
     if mesh.vertex_color.exists:
-        values, indices = stored(mesh.vertex_color)
-        colors = values[indices[corners]][..., :3]
+        colors = at_corners(mesh.vertex_color, corners)[..., :3]
         arrays["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
-    textured = [k for k in np.unique(material) if k >= 0 and palette.textures[k] is not None]
     if mesh.vertex_uv.exists:
         sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
-        names = {palette.textures[k].uv_set for k in textured}
-        coordinates = {name: stored(sets.get(name) or mesh.vertex_uv) for name in names}
-        values, indices = stored(mesh.vertex_uv)
-        places = upper_left(values[indices[corners]]).astype(np.float32)
-        for k in textured:
-            texture, rows = palette.textures[k], np.flatnonzero(material == k)
-            values, indices = coordinates[texture.uv_set]
-            places[rows] = in_image(values[indices[corners[rows]]], texture)
+        places = upper_left(at_corners(mesh.vertex_uv, corners))
+        for k in np.unique(material[material >= 0]).tolist():
+            texture, rows = scene.reader(k), np.flatnonzero(material == k)
+            if texture is not None:
+                uv = at_corners(sets.get(texture.uv_set) or mesh.vertex_uv, corners[rows])
+                places[rows] = in_image(uv, texture)
         arrays["places"] = places
     return arrays
 
 
-def stored(attribute):
-    """Return the values of an attribute, and which each corner has."""
+def at_corners(attribute, corners):
+    """Return the values of an attribute at corners (m, 3), shape (m, 3, width)."""
     values = np.array([tuple(value) for value in attribute.values], float)
-    return values, np.array(list(attribute.indices), int)
+    return values[np.array(list(attribute.indices), int)[corners]]
 
 
 def in_image(uv, texture):
-    """Return where texture coordinates lie in the image, from its upper left corner."""
+    """Return where texture coordinates (..., 2) lie in the image, from its upper left corner."""
     if texture.has_uv_transform:
         columns = np.array([tuple(column) for column in texture.uv_to_texture])
         uv = uv @ columns[:2, :2] + columns[3, :2]
     return upper_left(uv)
-
-
-def upper_left(uv):
-    """Return texture coordinates from the upper left corner of an image, shape (..., 2)."""
-    return np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)

@@ -1,6 +1,6 @@
 """USD with UsdSkel: read by usd-core, handed on as the arrays of a scene.
 
-`cutcell.io.scenes.document` says what the arrays are. Matrices of USD multiply from the right.
+Matrices of USD multiply from the right.
 """
 
 from __future__ import annotations
@@ -11,8 +11,10 @@ import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
 from ..geometry.polygons import cut_polygons
-from .usd_corners import corner_arrays
-from .usd_materials import UsdPalette, surface
+from .scene import Scene
+from .usd_surfaces import TIME, surface
+
+EVERYTHING = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
 
 
 def read(path):
@@ -35,10 +37,10 @@ def read_stage(file):
         real = Path(layer.realPath or file)
         if real != file and file.parent not in real.parents:
             raise RuntimeError(f"it refers to a file outside of its folder ({real.name})")
-    scene = Scene(stage, file)
-    scene.add_skeletons()
-    scene.add_meshes()
-    return scene.arrays()
+    reader = Stage(stage, file)
+    reader.add_skeletons()
+    reader.add_meshes()
+    return reader.scene.arrays()
 
 
 def matrix(value):
@@ -50,44 +52,41 @@ def parts(value):
     """Return a Gf matrix as translation, rotation (x, y, z, w) and scale, shape (10,)."""
     transform = Gf.Transform(Gf.Matrix4d(value))
     turn = transform.GetRotation().GetQuat()
-    return [*transform.GetTranslation(), *turn.GetImaginary(), turn.GetReal(),
-            *transform.GetScale()]  # fmt: skip
+    rotation = [*turn.GetImaginary(), turn.GetReal()]
+    return [*transform.GetTranslation(), *rotation, *transform.GetScale()]
 
 
-class Scene:
-    """The arrays of a stage at rest, and its joints' motion."""
+class Stage:
+    """Reads a stage at rest, and its joints' motion, into a scene."""
 
     def __init__(self, stage, file):
-        self.stage, self.palette = stage, UsdPalette(file)
+        self.stage, self.file, self.scene = stage, file, Scene()
         scale = UsdGeom.GetStageMetersPerUnit(stage)
         turn = [0, 0, 0, 1.0]
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
             turn = [-np.sqrt(0.5), 0, 0, np.sqrt(0.5)]
-        self.nodes = [("", -1, [0, 0, 0, *turn, *[scale] * 3], False, False)]
-        self.meshes, self.mesh_arrays = [], {}
+        self.scene.add_node("", -1, [0, 0, 0, *turn, *[scale] * 3], False, False)
         self.bound = {}
-        self.clips, self.tracks, self.keys = [], [], [np.zeros((0, 5))]
         self.cache = UsdSkel.Cache()
-        self.places = UsdGeom.XformCache(Usd.TimeCode.EarliestTime())
+        self.places = UsdGeom.XformCache(TIME)
+        self.prims = list(stage.Traverse(EVERYTHING))
 
     def add_skeletons(self):
         """Make nodes of all joints, and remember which meshes follow them."""
-        everything = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
-        for prim in self.stage.Traverse(everything):
-            if not prim.IsA(UsdSkel.Root):
-                continue
-            root = UsdSkel.Root(prim)
-            self.cache.Populate(root, everything)
-            for binding in self.cache.ComputeSkelBindings(root, everything):
-                query = self.cache.GetSkelQuery(binding.GetSkeleton())
-                first = self.add_joints(query)
-                for target in binding.GetSkinningTargets():
-                    self.bound[target.GetPrim().GetPath()] = (target, query, first)
-        if len(self.nodes) == 1:  # no mesh follows a skeleton
-            for prim in self.stage.Traverse(everything):
-                query = prim.IsA(UsdSkel.Skeleton) and self.cache.GetSkelQuery(
-                    UsdSkel.Skeleton(prim)
-                )
+        bindings = []
+        for prim in self.prims:
+            if prim.IsA(UsdSkel.Root):
+                root = UsdSkel.Root(prim)
+                self.cache.Populate(root, EVERYTHING)
+                bindings += self.cache.ComputeSkelBindings(root, EVERYTHING)
+        for binding in bindings:
+            query = self.cache.GetSkelQuery(binding.GetSkeleton())
+            first = self.add_joints(query)
+            for target in binding.GetSkinningTargets():
+                self.bound[target.GetPrim().GetPath()] = (target, query, first)
+        for prim in self.prims if not bindings else ():  # no mesh follows a skeleton
+            if prim.IsA(UsdSkel.Skeleton):
+                query = self.cache.GetSkelQuery(UsdSkel.Skeleton(prim))
                 if query:
                     self.add_joints(query)
 
@@ -95,16 +94,15 @@ class Scene:
         """Add a skeleton's joints; return the number of the first node."""
         skeleton = query.GetPrim()
         stands = self.places.GetLocalToWorldTransform(skeleton)
-        self.nodes.append((skeleton.GetName(), 0, parts(stands), False, False))
-        first = len(self.nodes)
+        first = self.scene.add_node(skeleton.GetName(), 0, parts(stands), False, False) + 1
         order, topology = query.GetJointOrder(), query.GetTopology()
         rest = query.GetSkeleton().GetRestTransformsAttr().Get()
         if rest is None or len(rest) != len(order):
-            rest = query.ComputeJointLocalTransforms(Usd.TimeCode.EarliestTime())
+            rest = query.ComputeJointLocalTransforms(TIME)
         for k, (joint, local) in enumerate(zip(order, rest, strict=True)):
             above = topology.GetParent(k)
             parent = first + above if above >= 0 else first - 1
-            self.nodes.append((joint.rsplit("/", 1)[-1], parent, parts(local), False, True))
+            self.scene.add_node(joint.rsplit("/", 1)[-1], parent, parts(local), False, True)
         self.add_motion(query, first)
         return first
 
@@ -122,63 +120,31 @@ class Scene:
             values = np.array([np.array(one, float) for one in moved])
             for k, joint in enumerate(motion.GetJointOrder()):
                 if joint in at:
-                    self.keys.append(np.zeros((len(times), 5)))
-                    self.keys[-1][:, 0] = seconds
-                    self.keys[-1][:, 1 : 1 + values.shape[2]] = values[:, k]
-                    self.tracks.append((len(self.clips), at[joint], path, len(times)))
-        self.clips.append(motion.GetPrim().GetName())
+                    self.scene.add_track(at[joint], path, seconds, values[:, k])
+        self.scene.end_clip(motion.GetPrim().GetName())
 
     def add_meshes(self):
         """Add all meshes, each on a node of its own."""
-        for prim in self.stage.Traverse(Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)):
-            points = (
-                UsdGeom.Mesh(prim).GetPointsAttr().Get(Usd.TimeCode.EarliestTime())
-                if prim.IsA(UsdGeom.Mesh)
-                else None
-            )
+        for prim in self.prims:
+            mesh = UsdGeom.Mesh(prim)
+            points = mesh.GetPointsAttr().Get(TIME) if prim.IsA(UsdGeom.Mesh) else None
             if not points:
                 continue
-            k = len(self.meshes)
-            hidden = (
-                UsdGeom.Imageable(prim).ComputeVisibility(Usd.TimeCode.EarliestTime())
-                == UsdGeom.Tokens.invisible
-            )
-            self.meshes.append((prim.GetName(), len(self.nodes)))
-            self.nodes.append((prim.GetName(), 0, [0, 0, 0, 0, 0, 0, 1, 1, 1, 1], hidden, False))
+            hidden = mesh.ComputeVisibility(TIME) == UsdGeom.Tokens.invisible
+            at = [0, 0, 0, 0, 0, 0, 1, 1, 1, 1]
+            node = self.scene.add_node(prim.GetName(), 0, at, hidden, False)
             place = matrix(self.places.GetLocalToWorldTransform(prim))
             vertices = np.array(points, float)
-            triangles = faces, corners, polygons = cut(UsdGeom.Mesh(prim), vertices)
+            faces, corners, polygons = cut(mesh, vertices)
             arrays = {"vertices": vertices, "faces": faces}
-            arrays |= corner_arrays(prim, *triangles)
-            arrays |= surface(prim, corners, polygons, faces, self.palette, arrays.get("places"))
+            arrays |= surface(prim, faces, corners, polygons, self.scene, self.file)
             if prim.GetPath() in self.bound:
                 target, query, first = self.bound[prim.GetPath()]
                 # Joints were bound in their skeleton's own space, and the mesh goes there.
                 stands = self.places.GetLocalToWorldTransform(query.GetPrim())
                 place = matrix(stands) @ matrix(target.GetGeomBindTransform())
                 arrays |= influences(target, query, first, len(points))
-            arrays["place"] = place
-            self.mesh_arrays |= {f"mesh_{k}_{key}": value for key, value in arrays.items()}
-
-    def arrays(self):
-        """Return the arrays of the scene."""
-        names, parents, transforms, hidden, bones = zip(*self.nodes, strict=True)
-        return (
-            self.mesh_arrays
-            | self.palette.arrays()
-            | {
-                "node_names": np.array(names, np.str_),
-                "node_parents": np.array(parents),
-                "node_transforms": np.array(transforms, float),
-                "node_hidden": np.array(hidden),
-                "node_bones": np.array(bones),
-                "mesh_names": np.array([name for name, _ in self.meshes], np.str_),
-                "mesh_nodes": np.array([node for _, node in self.meshes], int),
-                "clip_names": np.array(self.clips, np.str_),
-                "tracks": np.array(self.tracks, int).reshape(-1, 4),
-                "keys": np.concatenate(self.keys),
-            }
-        )
+            self.scene.add_mesh(prim.GetName(), node, arrays | {"place": place})
 
 
 def cut(mesh, points):
