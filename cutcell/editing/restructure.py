@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError, SkeletonError
 from ..rig import Clip, Rig, Skeleton, with_origin
-from ..rig.clip import Motion
-from ..rig.transforms import composed, relative
+from ..rig.clip import Rebased
 from ..runtime.display import shown_name
 from .corrections import Corrections
 from .locks import joint_index
@@ -45,6 +44,7 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
     allowed = rig.allowed
     if allowed is not None:
         allowed = allowed[:, [max(int(origin[j]), 0) for j in with_origin(skeleton, origin)]]
+    unmoved = np.zeros((len(origin), 3))
     return replace(
         rig,
         skeleton=skeleton,
@@ -53,7 +53,7 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
         clips=tuple(
             Clip(
                 clip.name,
-                motion=Restructured(clip.motion, old.joints, old.parents, skeleton.parents, origin),
+                motion=Rebased(clip.motion, old.parents, skeleton.parents, origin, unmoved),
             )
             for clip in rig.clips
         ),
@@ -175,46 +175,3 @@ def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
             above = below[0] if len(below) else (~removed).argmax()
         heir[j] = above
     return heir
-
-
-@dataclass(frozen=True, eq=False)
-class Restructured:
-    """A motion of another skeleton's joints; see `restructured`."""
-
-    motion: Motion
-    places: NDArray[np.float64]  # (i, 3), positions of the joints that `motion` moves
-    before: NDArray[np.int32]  # (i,), their parents
-    parents: NDArray[np.int32]  # (j,), parents now
-    origin: NDArray[np.int_]  # (j,), which of its joints each one is; -1 for none
-
-    @property
-    def joints(self) -> int:
-        """How many joints it moves."""
-        return len(self.origin)
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return self.motion.duration
-
-    @property
-    def times(self) -> NDArray[np.float64]:
-        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
-        return self.motion.times
-
-    def moved(
-        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
-    ) -> Restructured:
-        """Return the motion of moved joints."""
-        displacement, from_file = np.zeros_like(self.places), self.origin >= 0
-        displacement[self.origin[from_file]] = by[from_file]
-        moved = Clip("", motion=self.motion).moved(self.places, self.before, displacement).motion
-        return replace(self, motion=moved, places=self.places + displacement)
-
-    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
-        before = relative(self.motion.sample(seconds), self.before)
-        local = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
-        from_file = self.origin >= 0
-        local[:, from_file] = before[:, self.origin[from_file]]
-        return composed(local, self.parents)

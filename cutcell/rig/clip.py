@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -35,9 +35,7 @@ class Motion(Protocol):
 class Movable(Protocol):
     """A motion that knows by itself how it goes on when joints stand elsewhere at rest."""
 
-    def moved(
-        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
-    ) -> Motion:
+    def moved(self, by: NDArray[np.float64]) -> Motion:
         """Return it for joints that were moved; see `Clip.moved`."""
 
 
@@ -135,9 +133,7 @@ class Clip:
         at = np.clip(times.reshape(-1), 0, self.duration)
         return self.motion.sample(at).reshape(*times.shape, self.joints, 4, 4)
 
-    def moved(
-        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
-    ) -> Clip:
+    def moved(self, parents: NDArray[np.int32], by: NDArray[np.float64]) -> Clip:
         """Return the same motion of joints that stand elsewhere at rest.
 
         Each turns as before, about its new place. Where it shifts against its parent it goes on to
@@ -145,16 +141,14 @@ class Clip:
 
         Parameters
         ----------
-        joints : array, shape (j, 3), float64
-            Where they stood.
         parents : array, shape (j,), int32
         by : array, shape (j, 3), float64
             How far each was moved.
         """
-        given = joints, parents, by
         motion = self.motion
-        moved = motion.moved(*given) if isinstance(motion, Movable) else Moved(motion, *given)
-        return Clip(self.name, motion=moved)
+        if not isinstance(motion, Movable):
+            motion = Rebased(motion, parents, parents, np.arange(len(by)), np.zeros_like(by))
+        return Clip(self.name, motion=motion.moved(by))
 
 
 class Frames:
@@ -203,28 +197,34 @@ class Frames:
 
 
 @dataclass(frozen=True, eq=False)
-class Moved:
-    """Another motion, of joints that stand elsewhere at rest; see `Clip.moved`.
+class Rebased:
+    """Another motion, of joints that stand elsewhere at rest or hang on other parents.
+
+    A joint of that motion keeps its motion relative to its parent; others do not move against
+    theirs.
 
     Parameters
     ----------
     motion : Motion
-    before : array, shape (j, 3), float64
-        Where the joints stood.
+    before : array, shape (i,), int32
+        Parents of the joints of `motion`.
     parents : array, shape (j,), int32
+    origin : array, shape (j,), int
+        Which joint of `motion` each one is, -1 for none.
     by : array, shape (j, 3), float64
         How far each was moved.
     """
 
     motion: Motion
-    before: NDArray[np.float64]
+    before: NDArray[np.int32]
     parents: NDArray[np.int32]
+    origin: NDArray[np.integer]
     by: NDArray[np.float64]
 
     @property
     def joints(self) -> int:
         """How many joints it moves."""
-        return self.motion.joints
+        return len(self.origin)
 
     @property
     def duration(self) -> float:
@@ -236,24 +236,19 @@ class Moved:
         """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
         return self.motion.times
 
-    def moved(
-        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
-    ) -> Moved:
+    def moved(self, by: NDArray[np.float64]) -> Rebased:
         """Return it for joints that were moved again."""
-        return Moved(self.motion, self.before, self.parents, self.by + by)
+        if not isinstance(self.motion, Movable):
+            return replace(self, by=self.by + by)
+        inner, has_origin = np.zeros((len(self.before), 3)), self.origin >= 0
+        inner[self.origin[has_origin]] = by[has_origin]
+        return replace(self, motion=self.motion.moved(inner))
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
-        world = self.motion.sample(seconds).copy()
-        world[..., :3, 3] += _rotated(world, self.before)
-        own, held = relative(world, self.parents), self.parents >= 0
-        own[..., :3, 3] += self.by
-        own[:, held, :3, 3] -= self.by[self.parents[held]]
-        world = composed(own, self.parents)
-        world[..., :3, 3] -= _rotated(world, self.before + self.by)
-        return world
-
-
-def _rotated(matrices: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (j, 3), each by the linear part of matrices (f, j, 4, 4): (f, j, 3)."""
-    return np.einsum("fjab,jb->fja", matrices[..., :3, :3], points)
+        before = relative(self.motion.sample(seconds), self.before)
+        local = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
+        has_origin = self.origin >= 0
+        local[:, has_origin] = before[:, self.origin[has_origin]]
+        local[..., :3, 3] += self.by - np.einsum("fjab,jb->fja", local[..., :3, :3], self.by)
+        return composed(local, self.parents)

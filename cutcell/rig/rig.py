@@ -212,7 +212,7 @@ class Rig(Summarized):
         by = skeleton.joints - before.joints
         if not by.any():
             return self
-        clips = tuple(clip.moved(before.joints, before.parents, by) for clip in self.clips)
+        clips = tuple(clip.moved(before.parents, by) for clip in self.clips)
         return replace(self, skeleton=skeleton, clips=clips)
 
     def _check_units(self) -> None:

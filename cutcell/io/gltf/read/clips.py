@@ -131,9 +131,7 @@ class Channels:
             raise FileError(f"{self.label} leads to matrices that are not finite numbers")
         return matrices
 
-    def moved(
-        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
-    ) -> Channels:
+    def moved(self, by: NDArray[np.float64]) -> Channels:
         """Return it as it is in the file that is written with joints moved; see `Clip.moved`."""
         return replace(self, tree=self.tree.moved(by))
 
