@@ -21,21 +21,13 @@ COPIES = 2
 
 
 class ReadWeights(NamedTuple):
-    """Weights as they were read.
-
-    Parameters
-    ----------
-    weights : array, shape (n, j), float64
-        Rows sum to one or to zero. None if there are no weights.
-    warnings : tuple of str
-        A sentence if some were left out.
-    sums : array, shape (n,)
-        What each row summed to in the file; NaN where a weight was left out.
-    """
+    """Weights as they were read."""
 
     weights: NDArray[np.float64] | None
-    warnings: tuple[str, ...]
+    """(n, j): rows sum to one or to zero. None if there are no weights."""
+    warnings: tuple[str, ...]  # A sentence if some were left out
     sums: NDArray[np.float64] | None
+    """(n,): what each row summed to in the file; NaN where a weight was left out."""
 
 
 NO_WEIGHTS = ReadWeights(None, (), None)

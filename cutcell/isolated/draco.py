@@ -6,10 +6,7 @@ import DracoPy
 
 
 def decode(data, ends):
-    """Decode meshes.
-
-    Shapes: data (b,), ends (k,).
-    """
+    """Decode meshes. Shapes: data (b,), ends (k,)."""
     arrays, start = {}, 0
     for k, end in enumerate(ends.tolist()):
         try:

@@ -63,10 +63,7 @@ def check_choice(name: str, value: Any, choices: Collection[Any]) -> Any:
 
 
 def check_positions(points: NDArray[np.float64], what: str, error: type[CutcellError]) -> None:
-    """Refuse points whose coordinates are too large to compute with.
-
-    Shapes: points (n, 3).
-    """
+    """Refuse points whose coordinates are too large to compute with. Shapes: points (n, 3)."""
     far = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
     if len(far):
         position = ", ".join(f"{x:.3g}" for x in points[far[0]])

@@ -36,35 +36,17 @@ MAX_CANDIDATES = 256
 
 @dataclass(eq=False)
 class BoundSkin:
-    """The joints of a skin, as they were bound and as their nodes are.
+    """The joints of a skin, as they were bound and as their nodes are."""
 
-    Parameters
-    ----------
-    inverse : array, shape (j, 4, 4)
-        Inverse bind matrices; `mend` replaces some.
-    shares : array, shape (j,)
-        The sum of the vertices' weights on each joint.
-    world : array, shape (j, 4, 4)
-        Of the joints' nodes.
-    relative : array, shape (j, 4, 4)
-        From each joint's node to that of the nearest joint above.
-    parents : list of int
-        The nearest joint above, -1 for none.
-    order : list of int
-        The joints, parents first.
-    corners : array, shape (2, 3)
-        Of the box around the vertices.
-    """
-
-    inverse: NDArray[np.float64]
-    shares: NDArray[np.float64]
-    world: NDArray[np.float64]
+    inverse: NDArray[np.float64]  # (j, 4, 4): inverse bind matrices; `mend` replaces some
+    shares: NDArray[np.float64]  # (j,): the sum of the vertices' weights on each joint
+    world: NDArray[np.float64]  # (j, 4, 4): of the joints' nodes
     relative: NDArray[np.float64]
-    parents: list[int]
-    order: list[int]
-    corners: NDArray[np.float64]
-    mended: NDArray[np.bool_] = field(init=False)
-    """Which joints got another matrix."""
+    """(j, 4, 4): from each joint's node to that of the nearest joint above."""
+    parents: list[int]  # the nearest joint above, -1 for none
+    order: list[int]  # the joints, parents first
+    corners: NDArray[np.float64]  # (2, 3): of the box around the vertices
+    mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
     """Of those, joints that stay where their matrix was, with their places."""
     is_trusted: NDArray[np.bool_] = field(init=False)

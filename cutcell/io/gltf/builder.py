@@ -50,10 +50,7 @@ class GltfBuilder:
         return number
 
     def add_mesh(self, name: str, attributes: dict[str, int], faces: NDArray) -> int:
-        """Append a mesh with one primitive.
-
-        Shapes: faces (m, 3).
-        """
+        """Append a mesh with one primitive. Shapes: faces (m, 3)."""
         count = self.buffer.accessors[attributes["POSITION"]]["count"]
         kind = "<u2" if count <= np.iinfo(np.uint16).max else "<u4"
         indices = self.buffer.store(faces.reshape(-1, 1).astype(kind), target=ELEMENT_ARRAY_BUFFER)
@@ -61,10 +58,7 @@ class GltfBuilder:
         return self.add("meshes", {"name": name, "primitives": [primitive]})
 
     def add_skin(self, joints: list[int], inverse: NDArray, **fields: Any) -> int:
-        """Append a skin.
-
-        Shapes: inverse (j, 4, 4).
-        """
+        """Append a skin. Shapes: inverse (j, 4, 4)."""
         binds = self.floats(inverse.transpose(0, 2, 1).reshape(-1, 16), target=None)
         return self.add("skins", {"joints": joints, "inverseBindMatrices": binds, **fields})
 

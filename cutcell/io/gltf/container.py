@@ -34,25 +34,19 @@ class Document:
     path: Path
     json: dict[str, Any]
     buffers: list[bytes]
-    size: int = 0
-    """Bytes of its JSON."""
-    binary: bool = True
-    """Whether it came as a GLB container."""
+    size: int = 0  # bytes of its JSON
+    binary: bool = True  # whether it came as a GLB container
     chunks: list[tuple[int, bytes]] = field(default_factory=list)
     """GLB chunks that are neither JSON nor the binary buffer."""
-    accessors: dict[int, Any] = field(default_factory=dict)
-    """Accessors checked so far."""
-    decoded: dict[int, Any] = field(default_factory=dict)
-    """Accessors decoded so far."""
+    accessors: dict[int, Any] = field(default_factory=dict)  # accessors checked so far
+    decoded: dict[int, Any] = field(default_factory=dict)  # accessors decoded so far
     finite: set[int] = field(default_factory=set)
     """Accessors that were seen to hold finite numbers only."""
     triangles: dict[int, Any] = field(default_factory=dict)
     """Vertices, faces and primitives of meshes read so far."""
     _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
-    allowance: Allowance = field(init=False)
-    """Memory that may be taken to read it."""
-    warnings: list[str] = field(default_factory=list)
-    """Warnings of reading it, in sentences."""
+    allowance: Allowance = field(init=False)  # memory that may be taken to read it
+    warnings: list[str] = field(default_factory=list)  # warnings of reading it, in sentences
     surfaces: Any = None
     """Of a document that was made of another format: the `Surfaces` that colour its meshes."""
 

@@ -17,10 +17,7 @@ def store_deform(
     skins: Iterable[tuple[int, Sequence[int]]],
     deform: NDArray[np.bool_],
 ) -> None:
-    """Store which joints deform.
-
-    Shapes: deform (j,).
-    """
+    """Store which joints deform. Shapes: deform (j,)."""
     for skin, joints in skins:
         extras = document["skins"][skin].setdefault("extras", {})
         if isinstance(extras, dict):  # glTF allows any value; another one is not ours to replace

@@ -16,39 +16,20 @@ DECIMALS = 6
 
 
 class Corners(NamedTuple):
-    """The corners of a mesh.
+    """The corners of a mesh."""
 
-    Parameters
-    ----------
-    normals : array, shape (m, 3, 3), float32, optional
-        Of length one.
-    places : array, shape (m, 3, 2), float32, optional
-        Texture coordinates from the upper left corner of an image.
-    """
-
-    normals: NDArray[np.float32] | None = None
+    normals: NDArray[np.float32] | None = None  # (m, 3, 3): of length one
     places: NDArray[np.float32] | None = None
+    """(m, 3, 2): texture coordinates from the upper left corner of an image."""
 
 
 class Piece(NamedTuple):
-    """The corners of some faces of a mesh as a file stores them.
+    """The corners of some faces of a mesh as a file stores them."""
 
-    Parameters
-    ----------
-    rows : slice
-        The faces.
-    corners : Corners
-        In the space of the file's mesh, normals of any length.
-    turned : array, shape (k,), bool
-        Which faces were turned round since the file was read.
-    matrix : array, shape (4, 4)
-        From the space of the file's mesh.
-    """
-
-    rows: slice
-    corners: Corners
-    turned: NDArray[np.bool_]
-    matrix: NDArray[np.float64]
+    rows: slice  # the faces
+    corners: Corners  # in the space of the file's mesh, normals of any length
+    turned: NDArray[np.bool_]  # (k,): which faces were turned round since the file was read
+    matrix: NDArray[np.float64]  # (4, 4): from the space of the file's mesh
 
 
 def surface_piece(

@@ -33,50 +33,32 @@ class StoredImage:
 
 @dataclass(frozen=True)
 class Layer:
-    """A way in which an image is used.
-
-    Parameters
-    ----------
-    image : int
-    nearest : bool
-        Whether its pixels are to be seen as squares.
-    cutoff : float, optional
-        Nothing is there where its alpha is less; None where alpha cuts nothing.
-    blended : bool
-        Whether what is behind shines through by its alpha.
-    color : tuple of int, optional
-        What is shown where the image cannot be, red, green and blue; the tints when left out.
-    """
+    """A way in which an image is used."""
 
     image: int
-    nearest: bool = False
+    nearest: bool = False  # whether its pixels are to be seen as squares
     cutoff: float | None = None
-    blended: bool = False
+    """Nothing is there where its alpha is less; None where alpha cuts nothing."""
+    blended: bool = False  # whether what is behind shines through by its alpha
     color: tuple[int, ...] | None = None
+    """What is shown where the image cannot be, red, green and blue; the tints when left out."""
 
 
 @dataclass(frozen=True, eq=False)
 class FaceColors:
-    """Colours of the corners of faces.
-
-    Parameters
-    ----------
-    corners : array, shape (m, 3, 4), float32
-        Of each corner: its position in the image, from the upper left corner; the
-        number of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`),
-        `BLENDED` added where alpha counts for what is behind.
-    tints : array, shape (m, 3, 3), uint8
-        What the image is multiplied by, or the colour where there is none; sRGB.
-    opacity : array, shape (m, 3), uint8
-        What the image's alpha is multiplied by; less than 255 only where `BLENDED` is added.
-    materials : array, shape (m,), int32
-        The number of each face's material among `Materials.names`, -1 for none.
-    """
+    """Colours of the corners of faces."""
 
     corners: NDArray[np.float32]
+    """(m, 3, 4): of each corner: its position in the image, from the upper left corner; the number
+    of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`), `BLENDED`
+    added where alpha counts for what is behind."""
     tints: NDArray[np.uint8]
+    """(m, 3, 3): what the image is multiplied by, or the colour where there is none; sRGB."""
     opacity: NDArray[np.uint8]
+    """(m, 3): what the image's alpha is multiplied by; less than 255 only where `BLENDED` is
+    added."""
     materials: NDArray[np.int32]
+    """(m,): the number of each face's material among `Materials.names`, -1 for none."""
 
     def of(self, rows: slice) -> FaceColors:
         """Return those of some faces, as views."""
@@ -87,28 +69,14 @@ class FaceColors:
 
 @dataclass(frozen=True, eq=False)
 class Materials:
-    """The base colours of a rig.
+    """The base colours of a rig."""
 
-    Parameters
-    ----------
-    body : FaceColors
-        Of the faces of `rig.mesh`.
-    attachments : tuple of FaceColors
-        Of those of each attachment.
-    layers : tuple of Layer
-    images : tuple of StoredImage
-    notes : tuple of str
-        What could not be read, in sentences.
-    names : tuple of str
-        Of the materials; empty where one has no name.
-    """
-
-    body: FaceColors
-    attachments: tuple[FaceColors, ...]
+    body: FaceColors  # of the faces of `rig.mesh`
+    attachments: tuple[FaceColors, ...]  # of those of each attachment
     layers: tuple[Layer, ...]
     images: tuple[StoredImage, ...]
-    notes: tuple[str, ...] = ()
-    names: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what could not be read, in sentences
+    names: tuple[str, ...] = ()  # of the materials; empty where one has no name
 
 
 class Collected:
@@ -160,10 +128,7 @@ own numbers there."""
 def face_colors(
     faces: NDArray[np.int32], pieces: Iterable[tuple[Any, int, slice]], paint: Paint
 ) -> FaceColors | None:
-    """Return the colours of faces.
-
-    Shapes: faces (m, 3).
-    """
+    """Return the colours of faces. Shapes: faces (m, 3)."""
     colors = FaceColors(
         np.zeros((len(faces), 3, 4), np.float32),
         np.full((len(faces), 3, 3), OPAQUE, np.uint8),

@@ -76,27 +76,15 @@ def color_notes(rig: Rig) -> tuple[str, ...]:
 
 
 class _Mesh(NamedTuple):
-    """The new arrays of a mesh with one primitive.
-
-    Parameters
-    ----------
-    old : dict of str to int
-        The accessors that are given up: "indices", the weights', other attributes' if vertices
-        were split.
-    arrays : dict of str to array
-        By attribute, of all vertices; weights are last.
-    faces : array, shape (m, 3)
-    groups : list of Group
-        Empty where the mesh keeps the plain material.
-    has_places : bool
-        Whether all groups have texture coordinates.
-    """
+    """The new arrays of a mesh with one primitive."""
 
     old: dict[str, int]
-    arrays: dict[str, NDArray]
-    faces: NDArray[np.intp]
-    groups: list[Group]
-    has_places: bool
+    """The accessors that are given up: "indices", the weights', other attributes' if vertices were
+    split."""
+    arrays: dict[str, NDArray]  # by attribute, of all vertices; weights are last
+    faces: NDArray[np.intp]  # (m, 3)
+    groups: list[Group]  # empty where the mesh keeps the plain material
+    has_places: bool  # whether all groups have texture coordinates
 
 
 def _with_looks(

@@ -38,8 +38,7 @@ class _Base(NamedTuple):
 
     factor: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
     texture: Any = None
-    material: Any = None
-    """The whole of it; None where the primitive names none."""
+    material: Any = None  # the whole of it; None where the primitive names none
 
     @property
     def blended(self) -> bool:

@@ -28,22 +28,12 @@ class Uses(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Faces that have one material.
+    """Faces that have one material."""
 
-    Parameters
-    ----------
-    material : int
-        In the document.
-    rows : array, shape (k,)
-        The faces, ascending.
-    textured, varied : bool
-        Whether they have texture coordinates, and colours by vertex.
-    """
-
-    material: int
-    rows: NDArray[np.intp]
-    textured: bool
-    varied: bool
+    material: int  # in the document
+    rows: NDArray[np.intp]  # (k,): the faces, ascending
+    textured: bool  # whether they have texture coordinates, and colours by vertex
+    varied: bool  # whether they have texture coordinates, and colours by vertex
 
 
 @dataclass(frozen=True)
@@ -70,10 +60,7 @@ class Palette:
         self._keys: dict[_MaterialKey, int] = {}
 
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
-        """Part faces by material.
-
-        Returns shapes values (m, 3, 6).
-        """
+        """Part faces by material. Returns shapes values (m, 3, 6)."""
         layers, rgba = self._visible(colors)
         # Blending matters where there is an image, or a colour that is not opaque.
         counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)

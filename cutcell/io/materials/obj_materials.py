@@ -32,16 +32,9 @@ NUMBERS = ("-o", "-s", "-t", "-mm")
 
 @dataclass(frozen=True, eq=False)
 class ObjSource:
-    """The OBJ file that a rig came from; its materials are read when somebody asks, as few do.
+    """The OBJ file that a rig came from; its materials are read when somebody asks, as few do."""
 
-    Parameters
-    ----------
-    path : Path
-        Its .mtl files and images are in its folder.
-    contents : ObjMesh
-    """
-
-    path: Path
+    path: Path  # its .mtl files and images are in its folder
     contents: ObjMesh
 
     @cached_property

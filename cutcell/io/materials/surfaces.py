@@ -19,27 +19,15 @@ WHITE = (1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The materials of a mesh's faces, and what their corners have.
+    """The materials of a mesh's faces, and what their corners have."""
 
-    Parameters
-    ----------
-    faces : array, shape (m, 3), int32
-        As they were read.
-    material : array, shape (m,), int32
-        Of each face, -1 for none.
-    places : array, shape (m, 3, 2), float32, optional
-        Position of each corner in the image, from its upper left corner.
-    colors : array, shape (m, 3, 3), uint8, optional
-        Of each corner, sRGB.
-    normals : array, shape (m, 3, 3), float32, optional
-        Of each corner, of any length; zero or not finite where there is none.
-    """
-
-    faces: NDArray[np.int32]
-    material: NDArray[np.int32]
+    faces: NDArray[np.int32]  # (m, 3): as they were read
+    material: NDArray[np.int32]  # (m,): of each face, -1 for none
     places: NDArray[np.float32] | None = None
-    colors: NDArray[np.uint8] | None = None
+    """(m, 3, 2): position of each corner in the image, from its upper left corner."""
+    colors: NDArray[np.uint8] | None = None  # (m, 3, 3): of each corner, sRGB
     normals: NDArray[np.float32] | None = None
+    """(m, 3, 3): of each corner, of any length; zero or not finite where there is none."""
 
     @property
     def is_painted(self) -> bool:
@@ -49,29 +37,15 @@ class Surface:
 
 @dataclass(frozen=True)
 class Material:
-    """The base colour of a material.
-
-    Parameters
-    ----------
-    name : str
-    color : tuple of float
-        Red, green and blue from 0 to 1, sRGB.
-    image : int
-        -1 for none.
-    opacity : float
-        From 0 to 1.
-    blended : bool
-        Whether the image's alpha counts.
-    replaced : bool
-        Whether the image takes the place of the colour, and is not multiplied by it.
-    """
+    """The base colour of a material."""
 
     name: str
-    color: tuple[float, ...] = WHITE
-    image: int = -1
-    opacity: float = 1.0
-    blended: bool = False
+    color: tuple[float, ...] = WHITE  # red, green and blue from 0 to 1, sRGB
+    image: int = -1  # -1 for none
+    opacity: float = 1.0  # from 0 to 1
+    blended: bool = False  # whether the image's alpha counts
     replaced: bool = False
+    """Whether the image takes the place of the colour, and is not multiplied by it."""
 
     @property
     def tint(self) -> tuple[int, ...]:
@@ -81,41 +55,23 @@ class Material:
 
 @dataclass(frozen=True)
 class ImageFile:
-    """An image that a file brings, or only names.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Of a file beside, as far as the file tells; the first that is there is taken.
-    content : bytes
-        Empty for a separate file.
-    """
+    """An image that a file brings, or only names."""
 
     names: tuple[str, ...]
-    content: bytes = b""
+    """Of a file beside, as far as the file tells; the first that is there is taken."""
+    content: bytes = b""  # empty for a separate file
 
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """The materials of a file, and which faces have them.
+    """The materials of a file, and which faces have them."""
 
-    Parameters
-    ----------
-    path : Path
-        The file; images are in its folder.
-    meshes : mapping of int to Surface
-        By the numbers of the meshes in the document that was made of the file; else 0 alone.
-    materials : tuple of Material
-    images : tuple of ImageFile
-    notes : tuple of str
-        What could not be read, in sentences.
-    """
-
-    path: Path
+    path: Path  # the file; images are in its folder
     meshes: Mapping[int, Surface]
+    """By the numbers of the meshes in the document that was made of the file; else 0 alone."""
     materials: tuple[Material, ...] = ()
     images: tuple[ImageFile, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what could not be read, in sentences
 
     @cached_property
     def coloured(self) -> bool:

@@ -21,31 +21,17 @@ KINDS = ("v", "vt", "vn")
 
 @dataclass(frozen=True, eq=False)
 class ObjMesh:
-    """The contents of an OBJ, by triangle where they are the faces'.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    places : array, shape (m, 3, 2), float32, optional
-        Texture coordinates of corners, from the upper left corner of an image; those of 0 0 for
-        corners without any.
-    normals : array, shape (m, 3, 3), float32, optional
-        As they are stored; NaN for none.
-    colors : array, shape (n, 3), optional
-        Of vertices, from 0 to 1.
-    material : array, shape (m,), int32
-        Positions in `names`, -1 for none.
-    names, libraries : tuple of str
-        The materials and their files.
-    """
+    """The contents of an OBJ, by triangle where they are the faces'."""
 
     mesh: TriangleMesh
     places: NDArray[np.float32] | None
-    normals: NDArray[np.float32] | None
-    colors: NDArray[np.float64] | None
-    material: NDArray[np.int32]
-    names: tuple[str, ...]
-    libraries: tuple[str, ...]
+    """(m, 3, 2): texture coordinates of corners, from the upper left corner of an image; those of 0
+    0 for corners without any."""
+    normals: NDArray[np.float32] | None  # (m, 3, 3): as they are stored; NaN for none
+    colors: NDArray[np.float64] | None  # (n, 3): of vertices, from 0 to 1
+    material: NDArray[np.int32]  # (m,): positions in `names`, -1 for none
+    names: tuple[str, ...]  # the materials and their files
+    libraries: tuple[str, ...]  # the materials and their files
 
 
 @dataclass

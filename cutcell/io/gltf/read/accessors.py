@@ -45,8 +45,7 @@ class Accessor:
 
     base: Stored
     normalized: bool = False
-    rows: Stored | None = None
-    """Elements that a sparse accessor replaces, and by what."""
+    rows: Stored | None = None  # elements that a sparse accessor replaces, and by what
     replaced: Stored | None = None
 
     def __len__(self) -> int:
@@ -75,10 +74,7 @@ class Accessor:
 
 
 def read_accessor(document: Document, index: Any, kind: str, user: str) -> NDArray:
-    """Return an accessor's values.
-
-    Returns shapes (count, width).
-    """
+    """Return an accessor's values. Returns shapes (count, width)."""
     accessor = find_accessor(document, index, kind, user)
     if index not in document.decoded:
         document.decoded[index] = accessor.decoded()

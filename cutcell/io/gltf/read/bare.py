@@ -17,47 +17,24 @@ from .primitives import StoredFaces, draws_triangles, primitives, read_triangles
 
 @dataclass(frozen=True, eq=False)
 class StoredMesh:
-    """A mesh of the document, where a node has it.
-
-    Parameters
-    ----------
-    node, mesh : int
-    hidden : bool
-        Whether `KHR_node_visibility` hides it.
-    world : array, shape (4, 4)
-        Of the node.
-    first_vertices : list of int
-        In the rig, of each primitive that draws triangles, in order.
-    """
+    """A mesh of the document, where a node has it."""
 
     node: int
     mesh: int
-    hidden: bool
-    world: NDArray[np.float64]
-    first_vertices: list[int]
+    hidden: bool  # whether `KHR_node_visibility` hides it
+    world: NDArray[np.float64]  # (4, 4): of the node
+    first_vertices: list[int]  # in the rig, of each primitive that draws triangles, in order
 
 
 @dataclass(frozen=True, eq=False)
 class BareSource:
-    """The glTF file without a skin that a rig came from, for saving.
-
-    Parameters
-    ----------
-    document : Document
-    mesh : TriangleMesh
-        As it was read.
-    stored : list of StoredMesh
-    faces : tuple of StoredFaces
-        As they are now, if faces were repaired.
-    why_bare : str
-        Why there are no joints, where the file lets expect some.
-    """
+    """The glTF file without a skin that a rig came from, for saving."""
 
     document: Document
-    mesh: TriangleMesh
+    mesh: TriangleMesh  # as it was read
     stored: list[StoredMesh]
-    faces: tuple[StoredFaces, ...] = ()
-    why_bare: str = ""
+    faces: tuple[StoredFaces, ...] = ()  # as they are now, if faces were repaired
+    why_bare: str = ""  # why there are no joints, where the file lets expect some
 
 
 def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig:

@@ -30,22 +30,13 @@ SAME_PLACE = 1e-6
 
 @dataclass
 class Bones:
-    """Nodes that are bones.
+    """Nodes that are bones."""
 
-    Parameters
-    ----------
-    joints : list of int
-        Ascending.
-    tops : set of int
-        The topmost nodes of trees of empty nodes. These are often the armature's own node, so that
-        a mesh directly below one of them is part of the body.
-    why_none : str
-        Why there are no joints, where the nodes look like bones.
-    """
-
-    joints: list[int] = field(default_factory=list)
+    joints: list[int] = field(default_factory=list)  # ascending
     tops: set[int] = field(default_factory=set)
-    why_none: str = ""
+    """The topmost nodes of trees of empty nodes. These are often the armature's own node, so that a
+    mesh directly below one of them is part of the body."""
+    why_none: str = ""  # why there are no joints, where the nodes look like bones
 
 
 def find_bones(

@@ -32,10 +32,7 @@ WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
 def read_clips(
     document: Document, nodes: Nodes, joints: list[int], inverse: NDArray, world: NDArray
 ) -> tuple[Clip, ...]:
-    """Return every animation that moves a joint.
-
-    Shapes: inverse (j, 4, 4), world (4, 4).
-    """
+    """Return every animation that moves a joint. Shapes: inverse (j, 4, 4), world (4, 4)."""
     animations = document.items("animations")
     if not animations:
         return ()
@@ -55,22 +52,14 @@ def read_clips(
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Channels with common keys: exporters give hundreds the same.
+    """Channels with common keys: exporters give hundreds the same."""
 
-    Parameters
-    ----------
-    keys : array, shape (k,), seconds
-    how : {"LINEAR", "STEP", "CUBICSPLINE"}
-    path : {"translation", "rotation", "scale"}
-    values : dict of int to Accessor
-        By what moves, numbered as in the subtree: the values at the keys, three each for a cubic
-        spline.
-    """
-
-    keys: NDArray[np.float64]
-    how: str
-    path: str
+    keys: NDArray[np.float64]  # (k,): seconds
+    how: str  # LINEAR, STEP, CUBICSPLINE
+    path: str  # translation, rotation, scale
     values: dict[int, Accessor]
+    """By what moves, numbered as in the subtree: the values at the keys, three each for a cubic
+    spline."""
 
     def at(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the values at some times, shape (f, c, width)."""

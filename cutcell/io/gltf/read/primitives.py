@@ -26,33 +26,20 @@ class Drawn(NamedTuple):
 
     primitive: dict[str, Any]
     first_vertex: int
-    rows: slice
-    """Its faces."""
+    rows: slice  # its faces
 
 
 @dataclass(frozen=True, eq=False)
 class StoredFaces:
-    """Triangles that are stored together: those of one primitive.
-
-    Parameters
-    ----------
-    mesh, primitive : int
-    first_vertex : int
-        The primitive's first vertex in the rig.
-    rows : slice
-        The triangles in the rig's mesh.
-    is_mirrored : bool
-        Whether they run the other way in the file.
-    turned : array, shape (m,), bool, optional
-        Where they are no longer the file's: which of those that are left were turned round.
-    """
+    """Triangles that are stored together: those of one primitive."""
 
     mesh: int
     primitive: int
-    first_vertex: int
-    rows: slice
-    is_mirrored: bool
+    first_vertex: int  # the primitive's first vertex in the rig
+    rows: slice  # the triangles in the rig's mesh
+    is_mirrored: bool  # whether they run the other way in the file
     turned: NDArray[np.bool_] | None = None
+    """(m,): where they are no longer the file's: which of those that are left were turned round."""
 
 
 def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:

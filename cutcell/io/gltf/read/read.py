@@ -40,13 +40,10 @@ class StoredPart:
     """Vertices that are stored together: one vertex buffer bound to one skin."""
 
     label: str
-    primitives: list[tuple[int, int]]
-    """(mesh, primitive) that draw from it."""
+    primitives: list[tuple[int, int]]  # (mesh, primitive) that draw from it
     skin: int
-    rows: slice
-    """Its vertices in the rig."""
-    joints: Sequence[int]
-    """Joint of the rig for each joint of the skin."""
+    rows: slice  # its vertices in the rig
+    joints: Sequence[int]  # joint of the rig for each joint of the skin
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +53,11 @@ class GltfSource:
     document: Document
     parts: list[StoredPart]
     skeleton: Skeleton
-    nodes: list[int]
-    """The node of each joint."""
+    nodes: list[int]  # the node of each joint
     inverse: NDArray[np.float64]
     """Inverse bind matrix of each joint, for vertices in the rig's space, shape (j, 4, 4)."""
     faces: tuple[StoredFaces, ...] = ()
-    attached: tuple[int, ...] = ()
-    """The node of each attachment."""
+    attached: tuple[int, ...] = ()  # the node of each attachment
     rescaled: NDArray[np.bool_] | None = None
     """Vertices whose weights are saved as they were loaded, not as the document has them."""
     mended: dict[int, dict[int, NDArray[np.float64]]] = field(default_factory=dict)

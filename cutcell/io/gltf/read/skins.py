@@ -22,8 +22,7 @@ from .primitives import draws_triangles, joint_shares, primitives, read_position
 class StoredSkin:
     """A skin as it is in a file."""
 
-    nodes: list[int]
-    """The node of each of its joints."""
+    nodes: list[int]  # the node of each of its joints
     bound: BoundSkin
     has_binds: bool
     """Whether it has inverse bind matrices; without them joints are where their nodes are."""
@@ -154,8 +153,7 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
 class Bind:
     """All joints of a file, and how each skin's vertices get into the rig's space."""
 
-    nodes: list[int] = field(default_factory=list)
-    """The node of each joint."""
+    nodes: list[int] = field(default_factory=list)  # the node of each joint
     inverse: list[NDArray] = field(default_factory=list)
     """Inverse bind matrix of each joint, for vertices in the rig's space."""
     skins: dict[int, list[int]] = field(default_factory=dict)

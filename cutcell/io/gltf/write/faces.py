@@ -67,20 +67,11 @@ def _edited(
 
 @dataclass(frozen=True, eq=False)
 class NewFaces:
-    """The new arrays of a primitive whose faces changed.
-
-    Parameters
-    ----------
-    primitive : dict
-    arrays : dict of str to array
-        Its "indices", and the attributes that changed with them.
-    old : dict of str to int
-        The accessors that these replace.
-    """
+    """The new arrays of a primitive whose faces changed."""
 
     primitive: dict[str, Any]
-    arrays: dict[str, NDArray]
-    old: dict[str, int]
+    arrays: dict[str, NDArray]  # its "indices", and the attributes that changed with them
+    old: dict[str, int]  # the accessors that these replace
 
 
 def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:

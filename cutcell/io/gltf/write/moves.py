@@ -32,22 +32,12 @@ BINDS = "inverseBindMatrices"
 
 @dataclass(frozen=True, eq=False)
 class NewValues:
-    """Values that take the place of an accessor's.
+    """Values that take the place of an accessor's."""
 
-    Parameters
-    ----------
-    owner : dict
-        What refers to them, under `key`.
-    key : str
-    values : array, shape (n, 3) or (n, 16), float32
-    old : int
-        The accessor that they replace.
-    """
-
-    owner: dict[str, Any]
+    owner: dict[str, Any]  # what refers to them, under `key`
     key: str
-    values: NDArray[np.float32]
-    old: int
+    values: NDArray[np.float32]  # (n, 3) or (n, 16)
+    old: int  # the accessor that they replace
 
 
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
