@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.pose import clips as motion
+from cutcell.pose import kinematics as motion
 from cutcell.rig import Rig
 from cutcell.rig.clip import Clip
 

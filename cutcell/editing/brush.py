@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig
-from ..rig.arrays import as_array
-from ..rig.checks import check_flag, check_integer, shown
+from ..rig.checks import as_array, check_flag, check_integer, shown
 from .stroke import Brush, PaintSurface, Stroke
 from .symmetry import find_joint_mirror
 

@@ -1,4 +1,4 @@
-"""Checks of parameters at the public doors."""
+"""Argument checks for public functions."""
 
 from __future__ import annotations
 
@@ -35,12 +35,11 @@ def check_fraction(name: str, value: Any) -> float:
     return _as_float(value)
 
 
-def check_number(name: str, value: Any, low: float, high: float, why: str = "") -> float:
+def check_number(name: str, value: Any, low: float, high: float) -> float:
     """Return `value` as a float, or say which range it must lie in."""
     if not _is_real(value) or not low <= _as_float(value) <= high:  # also catches nan
-        reason = f"; {why}" if why else ""
         raise ParameterError(
-            f"{name} must be a number from {low:g} to {high:g}, not {shown(value)}{reason}"
+            f"{name} must be a number from {low:g} to {high:g}, not {shown(value)}"
         )
     return _as_float(value)
 
@@ -98,3 +97,70 @@ def _as_float(value: Any) -> float:
         return float(value)
     except OverflowError:  # an integer of hundreds of digits
         return math.inf if value > 0 else -math.inf
+
+
+NUMBERS = "biufO"
+"""Kinds of arrays that may hold numbers: not complex ones, texts or dates."""
+EXACT = 2**53
+"""Whole numbers up to this are themselves as float64."""
+
+
+def as_array(
+    value: Any, dtype: Any, shape: tuple[int | None, ...], name: str, error: type[Exception]
+) -> NDArray:
+    """Return what is given as an array: a copy, unless nobody can write to what is given."""
+    try:
+        array = np.asarray(value)
+        empty = [0 if size is None else size for size in shape]
+        if array.size == 0 and 0 in empty:  # whatever its own shape and type
+            array = np.zeros(empty)
+        if array.dtype.kind not in NUMBERS:
+            raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
+        if np.issubdtype(dtype, np.integer) and array.dtype.kind == "f":
+            array = _quietly(array, np.float64)  # half precision knows no such number
+            array = np.where(np.abs(array) <= EXACT, array, 0.5)
+            if not np.array_equal(array, np.round(array)):
+                raise error(f"{name} must be whole numbers")
+        if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():
+            raise error(f"{name} must be True or False each")
+        if not _is_frozen(array, dtype):
+            array = _quietly(array, dtype)
+    except (TypeError, ValueError, OverflowError) as e:
+        if isinstance(e, error):
+            raise
+        raise error(f"{name} must be an array of numbers: {one_line(e)}") from None
+    expected = tuple("any" if s is None else s for s in shape)
+    if array.ndim != len(shape) or any(
+        s is not None and s != a for s, a in zip(shape, array.shape, strict=True)
+    ):
+        raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
+    return array
+
+
+def _quietly(array: NDArray, dtype: Any) -> NDArray:
+    """Return a copy of another type, in which a signalling NaN is a quiet one."""
+    with np.errstate(invalid="ignore"):
+        return np.array(array, dtype=dtype)
+
+
+def _is_frozen(array: NDArray, dtype: Any) -> bool:
+    """Return whether an array can be used as it is: read-only, and as it would be copied."""
+    flags = array.flags
+    return array.dtype == dtype and not flags.writeable and flags.c_contiguous and flags.aligned
+
+
+def frozen(array: NDArray) -> NDArray:
+    """Return an array after making it read-only."""
+    array.flags.writeable = False
+    return array
+
+
+def check_finite(points: NDArray, what: str, error: type, names: Any = None) -> None:
+    """Refuse points (n, 3) with a coordinate that is not a finite number."""
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        which = f'"{names[bad[0]]}"' if names else str(bad[0])
+        raise error(
+            f"{what} {which} has a coordinate that is not a finite number "
+            f"({points[bad[0]].tolist()}); {len(bad)} of {len(points)} are so"
+        )

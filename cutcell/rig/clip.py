@@ -152,13 +152,7 @@ class Clip:
 
 
 class Frames:
-    """A motion given as frames.
-
-    Parameters
-    ----------
-    times : array_like, shape (f,), float64
-    transforms : array_like, shape (f, j, 4, 4), float64
-    """
+    """A motion given as skinning matrices (f, j, 4, 4) at times (f,)."""
 
     def __init__(self, times: ArrayLike, transforms: ArrayLike) -> None:
         self.times = np.array(times, np.float64)
@@ -202,24 +196,13 @@ class Rebased:
 
     A joint of that motion keeps its motion relative to its parent; others do not move against
     theirs.
-
-    Parameters
-    ----------
-    motion : Motion
-    before : array, shape (i,), int32
-        Parents of the joints of `motion`.
-    parents : array, shape (j,), int32
-    origin : array, shape (j,), int
-        Which joint of `motion` each one is, -1 for none.
-    by : array, shape (j, 3), float64
-        How far each was moved.
     """
 
     motion: Motion
-    before: NDArray[np.int32]
-    parents: NDArray[np.int32]
-    origin: NDArray[np.integer]
-    by: NDArray[np.float64]
+    before: NDArray[np.int32]  # (i,): parents of the joints of `motion`
+    parents: NDArray[np.int32]  # (j,)
+    origin: NDArray[np.integer]  # (j,): which joint of `motion` each one is, -1 for none
+    by: NDArray[np.float64]  # (j, 3): how far each was moved
 
     @property
     def joints(self) -> int:

@@ -1,4 +1,4 @@
-"""Meshes and rigs as people have them: ours, plain arrays, or objects of trimesh and PyVista."""
+"""Conversion of meshes and rigs: from plain arrays, or objects of trimesh and PyVista."""
 
 from __future__ import annotations
 
@@ -18,26 +18,16 @@ from .skeleton import Skeleton
 class TrimeshLike(Protocol):
     """What is read of a `trimesh.Trimesh`."""
 
-    @property
-    def vertices(self) -> Any:
-        """Positions, shape (n, 3)."""
-
-    @property
-    def faces(self) -> Any:
-        """Triangles, shape (m, 3)."""
+    vertices: Any  # (n, 3)
+    faces: Any  # (m, 3)
 
 
 @runtime_checkable
 class PolyDataLike(Protocol):
     """What is read of a `pyvista.PolyData`."""
 
-    @property
-    def points(self) -> Any:
-        """Positions, shape (n, 3)."""
-
-    @property
-    def faces(self) -> Any:
-        """For each face how many corners it has, then these; all in one row."""
+    points: Any  # (n, 3)
+    faces: Any  # for each face how many corners it has, then these; all in one row
 
 
 MeshLike: TypeAlias = TriangleMesh | TrimeshLike | PolyDataLike | tuple[ArrayLike, ArrayLike]
@@ -51,10 +41,7 @@ RigLike: TypeAlias = (
 
 
 def as_mesh(mesh: MeshLike) -> TriangleMesh:
-    """Return a mesh of ours for one of several kinds.
-
-    Positions in C-contiguous float64 are used where they are, anything else is copied.
-    """
+    """Return a mesh for one of several kinds; positions in C-contiguous float64 are not copied."""
     if isinstance(mesh, TriangleMesh):
         return mesh
     if isinstance(mesh, tuple | list) and len(mesh) == 2:
@@ -70,7 +57,7 @@ def as_mesh(mesh: MeshLike) -> TriangleMesh:
 
 
 def as_rig(rig: RigLike) -> Rig:
-    """Return a rig of ours for one of several kinds."""
+    """Return a rig for one of several kinds."""
     if isinstance(rig, Rig):
         return rig
     if isinstance(rig, tuple | list) and len(rig) == 4:
@@ -85,7 +72,7 @@ def as_rig(rig: RigLike) -> Rig:
 
 
 def as_skeleton(skeleton: SkeletonLike) -> Skeleton:
-    """Return a skeleton of ours for one of several kinds."""
+    """Return a skeleton for one of several kinds."""
     if isinstance(skeleton, Skeleton):
         return skeleton
     if isinstance(skeleton, tuple | list) and len(skeleton) == 2:

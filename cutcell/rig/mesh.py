@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
 from ..runtime.repr import Summarized
-from .arrays import as_array, check_finite, frozen
+from .checks import as_array, check_finite, frozen
 
 
 @dataclass(frozen=True, eq=False, repr=False)

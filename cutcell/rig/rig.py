@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
 from ..runtime.repr import Summarized
-from .arrays import as_array, frozen
+from .checks import as_array, frozen
 from .clip import Clip
 from .mesh import TriangleMesh
 from .skeleton import Skeleton

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError
 from ..runtime.repr import Summarized
-from .arrays import as_array, check_finite, frozen
-from .checks import shown
+from .checks import as_array, check_finite, frozen, shown
 from .names import is_neutral
 
 LONG_CYCLE = 10

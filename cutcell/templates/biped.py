@@ -5,20 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame import Joints, mirrored
+from .frame import TRUNK, Joints, mirrored, sided
 from .interior import Interior, along, cut
 
 PARENTS = {
-    "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",
-    **{
-        f"{name}.{side}": parent if parent in ("chest", "hips") else f"{parent}.{side}"
-        for side in "LR"
-        for name, parent in (
-            ("shoulder", "chest"), ("upper_arm", "shoulder"), ("forearm", "upper_arm"),
-            ("hand", "forearm"), ("thigh", "hips"), ("shin", "thigh"), ("foot", "shin"),
-            ("toe", "foot"),
-        )
-    },
+    **dict(zip(TRUNK, ("", *TRUNK), strict=False)),
+    **sided(
+        shoulder="chest", upper_arm="shoulder", forearm="upper_arm", hand="forearm",
+        thigh="hips", shin="thigh", foot="shin", toe="foot",
+    ),
 }  # fmt: skip
 
 SOLE = 0.06
@@ -57,10 +52,10 @@ def place(body: Interior) -> Joints:
     if not shoulders <= base[1] <= shoulders + NECK * tall:
         base = _middle_at(body, float(np.clip(base[1], shoulders, shoulders + NECK * tall)) - floor)
     neck_height = base[1] - floor
-    leg = float(np.mean([body.branch(feet[a], feet[b], head) for a, b in ("LR", "RL")]))
+    reach = float(np.mean([body.branch(feet[a], feet[b], head) for a, b in ("LR", "RL")]))
     low, high = (share * neck_height for share in LEGS)
-    robe = leg < low
-    hip_height = ROBE_HIPS * neck_height if robe else min(1.1 * leg, high)
+    robe = reach < low
+    hip_height = ROBE_HIPS * neck_height if robe else min(1.1 * reach, high)
     joints: Joints = {}
     hips = _middle_at(body, hip_height + 0.03 * neck_height)
     trunk = body.middle_path(body.nearest(hips), body.nearest(base))
@@ -76,26 +71,18 @@ def place(body: Interior) -> Joints:
         joints[f"hand.{side}"] = wrist
         inner = 0.35 * joints["chest"] + 0.65 * base
         joints[f"shoulder.{side}"] = inner + 0.25 * (shoulder - inner)
-        joints.update(
-            {
-                f"{name}.{side}": at
-                for name, at in _leg(
-                    body, feet[side], hips, hip_height, robe, 1 if side == "L" else -1
-                ).items()
-            }
-        )
-    for name in ("hips", "spine", "chest", "neck", "head"):
+        leg = _leg(body, feet[side], hips, hip_height, robe, 1 if side == "L" else -1)
+        joints |= {f"{name}.{side}": at for name, at in leg.items()}
+    for name in TRUNK:
         joints[name] = joints[name] * [0.0, 1.0, 1.0]
     return mirrored(joints, body.height)
 
 
 def _sole(body: Interior, sign: int) -> int:
     """Return the node in the middle of what one foot stands on."""
-    points, y = body.points, body.points[:, 1] - body.floor
-    is_foot = (y < SOLE * body.height) & (sign * points[:, 0] > 0)
-    if not is_foot.any():
-        is_foot = y < SOLE * body.height
-    return _nearest_of(body, is_foot, points[is_foot].mean(axis=0))
+    low = body.points[:, 1] - body.floor < SOLE * body.height
+    is_foot = low & (sign * body.points[:, 0] > 0)
+    return body.central(is_foot if is_foot.any() else low)
 
 
 def _hand(body: Interior, head: int, belly: int, sign: int) -> int:
@@ -141,12 +128,10 @@ def _leg(
         ankle = path[np.abs(level - (ankle[1] - body.floor)).argmin()].copy()
         thigh = path[np.abs(level - 0.75 * height).argmin()]
         # On the line of the thigh: the path itself turns to the middle early.
-        top = knee + (thigh - knee) * (height - (knee[1] - body.floor)) / max(
-            thigh[1] - knee[1], 1e-9
-        )
-        top[0] = sign * np.clip(
-            sign * top[0], 0.03 * body.height, abs(ground[0]) + 0.05 * body.height
-        )
+        rise = (height - (knee[1] - body.floor)) / max(thigh[1] - knee[1], 1e-9)
+        top = knee + (thigh - knee) * rise
+        outer = abs(ground[0]) + 0.05 * body.height
+        top[0] = sign * np.clip(sign * top[0], 0.03 * body.height, outer)
     ankle[2] = min(ankle[2], heel + 0.5 * (toe_tip - heel))
     toe = ground.copy()
     toe[2] = heel + 0.72 * (toe_tip - heel)
@@ -166,8 +151,3 @@ def _middle_at(body: Interior, height: float) -> NDArray[np.float64]:
     point[1] = height + body.floor
     point[0] = 0.0
     return point
-
-
-def _nearest_of(body: Interior, among: NDArray[np.bool_], point: NDArray[np.float64]) -> int:
-    chosen = np.flatnonzero(among)
-    return int(chosen[np.linalg.norm(body.points[chosen] - point, axis=1).argmin()])

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, cast, get_args
+from typing import Any, Literal, cast, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
@@ -23,8 +22,11 @@ TEMPLATES: tuple[Template, ...] = get_args(Template)
 RESOLUTION = 64
 """With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
-SNAKE = tuple(f"spine.{n}" for n in range(1, 13))
-CHAIN = tuple(f"bone.{n}" for n in range(1, 6))
+STANDING: dict[str, Any] = {"biped": biped, "quadruped": quadruped}
+CHAINS = {
+    "snake": tuple(f"spine.{n}" for n in range(1, 13)),
+    "chain": tuple(f"bone.{n}" for n in range(1, 6)),
+}
 
 
 def check_template(name: str) -> Template:
@@ -88,8 +90,12 @@ def fit_skeleton(
         raise MeshError(
             "the mesh has no inside that joints could lie in: it is too thin, or open everywhere"
         )
-    axes, origin = _frame(nodes, template)
-    body = Interior(graph, axes, origin)
+    axes = np.eye(3)
+    if template in STANDING:
+        axes = standing(nodes, tall=template == "biped")
+    elif template == "hand":
+        axes = lying(nodes)
+    body = Interior(graph, axes, (nodes.min(axis=0) + nodes.max(axis=0)) / 2)
     joints, parents = _placed(body, template)
     names = list(parents)
     inside = body.inward(np.array([joints[name] for name in names]))
@@ -97,36 +103,18 @@ def fit_skeleton(
     return Skeleton(body.to_file(inside), above, names)
 
 
-def _frame(
-    nodes: NDArray[np.float64], template: Template
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the axes of the body's frame, and its origin: the middle of the bounding box."""
-    axes = np.eye(3)
-    if template in ("biped", "quadruped"):
-        axes = standing(nodes, tall=template == "biped")
-    elif template == "hand":
-        axes = lying(nodes)
-    return axes, (nodes.min(axis=0) + nodes.max(axis=0)) / 2
-
-
 def _placed(body: Interior, template: Template) -> tuple[Joints, dict[str, str]]:
-    if template == "biped":
-        return biped.place(body), biped.PARENTS
-    if template == "quadruped":
-        return quadruped.place(body), quadruped.PARENTS
+    if template in STANDING:
+        return STANDING[template].place(body), STANDING[template].PARENTS
     if template == "hand":
         joints = hand.place(body)
         return joints, hand.parents_of(joints)
-    names = SNAKE if template == "snake" else CHAIN
+    names = CHAINS[template]
     return chain.place(body, names), dict(zip(names, ("", *names), strict=False))
 
 
 def names_of(template: Template) -> list[tuple[str, ...]]:
     """Return the names that a template may give its joints: a hand may have fewer fingers."""
-    if template == "biped":
-        return [tuple(biped.PARENTS)]
-    if template == "quadruped":
-        return [tuple(quadruped.PARENTS)]
-    if template == "hand":
-        return hand.names()
-    return [SNAKE if template == "snake" else CHAIN]
+    if template in STANDING:
+        return [tuple(STANDING[template].PARENTS)]
+    return hand.names() if template == "hand" else [CHAINS[template]]

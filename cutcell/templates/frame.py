@@ -10,10 +10,20 @@ ALIKE = 0.06
 """Of the body's longest side: left and right joints that differ by less are made symmetric."""
 Joints = dict[str, NDArray[np.float64]]
 """Position of each joint by its name, in the body's frame."""
+TRUNK = ("hips", "spine", "chest", "neck", "head")
 SAMPLES = 4000
 """Vertices that are compared with their mirror images."""
 CLEARLY = 0.8
 """One axis is longer, or more of a mirror, if another has at most this part of it."""
+
+
+def sided(**parents: str) -> dict[str, str]:
+    """Return the parents of joints on the left and of those on the right."""
+    return {
+        f"{name}.{side}": parent if parent in TRUNK else f"{parent}.{side}"
+        for side in "LR"
+        for name, parent in parents.items()
+    }
 
 
 def mirror_axis(nodes: NDArray[np.float64]) -> int:

@@ -31,7 +31,10 @@ KNUCKLES = np.array([1.0, 0.58, 0.28])
 def place(body: Interior) -> Joints:
     """Return where the joints are: the hand, and three of each finger, the thumb first."""
     wrist, tips = _ends(body)
-    lengths = {tip: _length(body, tip, [t for t in tips if t != tip], wrist) for tip in tips}
+    lengths = {  # from the tip to where the finger parts from the nearest other one
+        tip: min((body.branch(tip, other, wrist) for other in tips if other != tip), default=0.0)
+        for tip in tips
+    }
     longest = max(lengths.values(), default=0.0)
     if longest < MIN_OF_HAND * body.distances(wrist).max():
         tips = []
@@ -105,11 +108,6 @@ def _climbed(body: Interior, far: NDArray[np.float64], node: int) -> int:
         if far[best] <= far[node]:
             return node
         node = best
-
-
-def _length(body: Interior, tip: int, others: list[int], wrist: int) -> float:
-    """Return how far from its tip a finger parts from the ones beside it."""
-    return min((body.branch(tip, other, wrist) for other in others), default=0.0)
 
 
 def _in_order(body: Interior, wrist: int, tips: list[int]) -> list[int]:

@@ -75,6 +75,12 @@ class Interior:
         chosen = np.flatnonzero(among)
         return int(chosen[self.depth[chosen].argmax()])
 
+    def central(self, among: NDArray[np.bool_]) -> int:
+        """Return the one of some nodes that is nearest to their mean."""
+        chosen = np.flatnonzero(among)
+        away = self.points[chosen] - self.points[chosen].mean(axis=0)
+        return int(chosen[np.linalg.norm(away, axis=1).argmin()])
+
     def distances(self, node: int) -> NDArray[np.float64]:
         """Return the lengths of the shortest paths through the body from a node to all."""
         if node not in self._distances:
@@ -132,11 +138,6 @@ def cut(body: Interior, tip: int, end: int, far: float) -> NDArray[np.float64]:
     at = np.array([body.distances(tip)[body.nearest(point)] for point in path])
     beyond = np.flatnonzero(at >= far)
     return path[: max(int(beyond[0]) + 1, 2)] if len(beyond) else path
-
-
-def length(path: NDArray[np.float64]) -> float:
-    """Return the length of a path (k, 3)."""
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
 
 def _smooth(path: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,20 +5,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame import Joints, mirrored
+from .frame import TRUNK, Joints, mirrored, sided
 from .interior import Interior, along, cut
 
+TAIL = ("tail.1", "tail.2", "tail.3")
 PARENTS = {
-    "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",
-    "tail.1": "hips", "tail.2": "tail.1", "tail.3": "tail.2",
-    **{
-        f"{name}.{side}": parent if parent in ("chest", "hips") else f"{parent}.{side}"
-        for side in "LR"
-        for name, parent in (
-            ("front_thigh", "chest"), ("front_shin", "front_thigh"), ("front_foot", "front_shin"),
-            ("thigh", "hips"), ("shin", "thigh"), ("foot", "shin"),
-        )
-    },
+    **dict(zip(TRUNK, ("", *TRUNK), strict=False)),
+    **dict(zip(TAIL, ("hips", *TAIL), strict=False)),
+    **sided(
+        front_thigh="chest", front_shin="front_thigh", front_foot="front_shin",
+        thigh="hips", shin="thigh", foot="shin",
+    ),
 }  # fmt: skip
 
 SOLE = 0.08
@@ -33,11 +30,11 @@ def place(body: Interior) -> Joints:
     y, z = points[:, 1] - body.floor, points[:, 2]
     low = y < SOLE * body.height
     half = (z[low].min() + z[low].max()) / 2
-    feet = {
-        (end, side): _sole(body, low & (before == (z > half)) & (sign * points[:, 0] > 0))
-        for end, before in (("front_", True), ("", False))
-        for side, sign in (("L", 1), ("R", -1))
-    }
+    feet = {}
+    for end, before in (("front_", True), ("", False)):
+        for side, sign in (("L", 1), ("R", -1)):
+            is_foot = low & (before == (z > half)) & (sign * points[:, 0] > 0)
+            feet[end, side] = body.central(is_foot if is_foot.any() else low)
     middle = np.abs(points[:, 0]) < 0.25 * np.abs(points[:, 0]).max() + body.cell
     trunk = y > 0.3 * body.height
     belly = body.deepest(middle & trunk & (np.abs(z - half) < 0.2 * np.ptp(z)))
@@ -69,19 +66,10 @@ def place(body: Interior) -> Joints:
     off_legs = body.distances(hips) + np.min([far - far[hips] for far in hind], axis=0)
     tail = _end(off_legs, behind)  # nodes on the path to a foot are no tail
     path = body.middle_path(hips, tail)
-    joints["tail.1"], joints["tail.2"], joints["tail.3"] = along(path, np.array([0.35, 0.57, 0.78]))
-    for name in ("hips", "spine", "chest", "neck", "head", "tail.1", "tail.2", "tail.3"):
+    joints |= zip(TAIL, along(path, np.array([0.35, 0.57, 0.78])), strict=True)
+    for name in (*TRUNK, *TAIL):
         joints[name] = joints[name] * [0.0, 1.0, 1.0]
     return mirrored(joints, float(np.ptp(points, axis=0).max()))
-
-
-def _sole(body: Interior, is_foot: NDArray[np.bool_]) -> int:
-    """Return the node in the middle of what one foot stands on."""
-    if not is_foot.any():
-        is_foot = body.points[:, 1] - body.floor < SOLE * body.height
-    chosen = np.flatnonzero(is_foot)
-    middle = body.points[chosen].mean(axis=0)
-    return int(chosen[np.linalg.norm(body.points[chosen] - middle, axis=1).argmin()])
 
 
 def _end(far: NDArray[np.float64], among: NDArray[np.bool_]) -> int:

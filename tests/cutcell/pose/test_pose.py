@@ -68,16 +68,6 @@ def test_one_joint_moves_its_subtree_only(drawn):
         assert_allclose(transforms[k], expected, atol=1e-12)
 
 
-def test_a_translation_moves_everything():
-    skeleton = cutcell.Skeleton([[0, 0, 0], [1, 0, 0]], [-1, 0])
-    turns = np.tile(axis_rotation("z", 90), (2, 1, 1))
-    still = cutcell.forward_kinematics(skeleton, turns)
-    moved = cutcell.forward_kinematics(skeleton, turns, translation=[1, 2, 3])
-    shift = np.eye(4)
-    shift[:3, 3] = [1, 2, 3]
-    assert_allclose(moved, shift @ still)
-
-
 @given(st.lists(st.floats(-5, 5), min_size=3, max_size=3), st.floats(-720, 720))
 def test_rotations_about_any_axis(axis, degrees):
     if np.linalg.norm(axis) < 1e-3:
@@ -158,7 +148,6 @@ EYES = np.tile(np.eye(3), (2, 1, 1))
         (lambda: cutcell.forward_kinematics(SKELETON, EYES[:1]), r"rotations has the shape"),
         (lambda: cutcell.forward_kinematics(SKELETON, EYES * np.nan), "rotations holds values"),
         (lambda: cutcell.forward_kinematics(SKELETON, "abc"), "rotations must be an array"),
-        (lambda: cutcell.forward_kinematics(SKELETON, EYES, [1, 2]), "translation has the shape"),
         (lambda: rotate_joint(SKELETON, 2, "x", 5), "no joint 2: the skeleton's are 0 to 1"),
         (lambda: rotate_joint(SKELETON, -1, "x", 5), "no joint -1"),
         (lambda: rotate_joint(SKELETON, 0, "w", 5), 'axis "w" is none of x, y, z'),

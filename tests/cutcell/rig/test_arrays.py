@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell import MeshError
-from cutcell.rig.arrays import as_array
+from cutcell.rig.checks import as_array
 
 PAIRS = (None, 2)
 
