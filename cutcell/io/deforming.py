@@ -26,24 +26,41 @@ def with_deform(
     weights: NDArray[np.float64] | None,
     stored: NDArray[np.int8] | None = None,
 ) -> tuple[Skeleton, NDArray[np.float64] | None, list[str]]:
-    """Find out which joints may carry weight, and say what a person may want to change.
+    """Return the skeleton with the joints that may carry weight, the weights, and warnings.
 
-    Also returns the weights without those of Blender's stand-in for vertices without weights.
+    The weights are without those of Blender's stand-in for vertices without weights.
 
-    Shapes: weights (n, j), stored (j,); returns weights (n, j).
+    Shapes: weights (n, j), stored (j,): 1, 0 or -1 where the file does not say.
     """
-    neutral = neutral_joints(skeleton)
-    if not neutral.any():
-        skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
-        return skeleton, weights, warnings
-    about_neutral: list[str] = []
+    if not len(skeleton.joints):
+        return skeleton, weights, []
+    neutral, warnings = neutral_joints(skeleton), []
     if weights is not None and weights[:, neutral].any():
-        about_neutral = [_neutral_warning(skeleton, neutral, weights)]
+        count = int((weights[:, neutral] > 0).any(axis=1).sum())
+        warnings.append(
+            f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
+            f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding "
+            "gives them new weights"
+        )
         weights = normalised(np.where(neutral, 0.0, weights))
-    if stored is not None:
+    if stored is not None and neutral.any():
         stored = np.where(neutral, 0, stored)
-    skeleton, warnings = _deforming(mesh, skeleton, weights, stored)
-    return skeleton, weights, about_neutral + warnings
+    if stored is None or not (stored == 1).any():
+        deform, more = _inferred(mesh, skeleton, weights)
+        return replace(skeleton, deform=deform), weights, warnings + more
+    deform = stored == 1
+    if (stored < 0).any():  # such as a skin that another program added
+        inferred, more = _inferred(mesh, skeleton, weights)
+        deform, warnings = np.where(stored < 0, inferred, deform), warnings + more
+    weighted = np.zeros(len(deform), bool)
+    if weights is not None:
+        weighted = (stored == 0) & (weights > 0).any(axis=0)
+    if weighted.any():
+        warnings.append(
+            f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
+            "not deforming: new weights give them none"
+        )
+    return replace(skeleton, deform=deform), weights, warnings
 
 
 def neutral_joints(skeleton: Skeleton) -> NDArray[np.bool_]:
@@ -52,77 +69,29 @@ def neutral_joints(skeleton: Skeleton) -> NDArray[np.bool_]:
     return neutral & (not neutral.all())
 
 
-def _deforming(
-    mesh: TriangleMesh,
-    skeleton: Skeleton,
-    weights: NDArray[np.float64] | None,
-    stored: NDArray[np.int8] | None,
-) -> tuple[Skeleton, list[str]]:
-    """Return the skeleton with the joints that deform, and warnings."""
-    if not len(skeleton.joints):
-        return skeleton, []
-    if stored is None or not (stored == 1).any():
-        return _inferred(mesh, skeleton, weights)
-    deform = stored == 1
-    warnings: list[str] = []
-    if (stored < 0).any():  # such as a skin that another program added
-        inferred, warnings = _inferred(mesh, skeleton, weights)
-        deform = np.where(stored < 0, inferred.deform, deform)
-    if weights is not None:
-        warnings += _weighted_warnings(skeleton, (stored == 0) & (weights > 0).any(axis=0))
-    return replace(skeleton, deform=deform), warnings
-
-
 def _inferred(
     mesh: TriangleMesh, skeleton: Skeleton, weights: NDArray[np.float64] | None
-) -> tuple[Skeleton, list[str]]:
+) -> tuple[NDArray[np.bool_], list[str]]:
+    """Return which joints (j,) deform by the weights, else by names and places, and warnings."""
     total = 0.0 if weights is None else float(weights.sum())
     if weights is None or total == 0:
         deform = deform_joints(mesh, skeleton).deform
-        return replace(skeleton, deform=deform), _control_warnings(skeleton, ~deform)
+        if deform.all():
+            return deform, []
+        return deform, [
+            f"{(~deform).sum()} of {len(deform)} joints are taken for controls, end markers or "
+            f"roots and get no weight: {_names(skeleton, ~deform)}"
+        ]
     share = weights.sum(axis=0) / total
     carries = share > 0
     stray = carries & (share < STRAY)
     if stray.any():
         stray &= ~deform_joints(mesh, skeleton).deform
-    return replace(skeleton, deform=carries & ~stray), _stray_warnings(skeleton, stray)
-
-
-def _neutral_warning(
-    skeleton: Skeleton, neutral: NDArray[np.bool_], weights: NDArray[np.float64]
-) -> str:
-    count = int((weights[:, neutral] > 0).any(axis=1).sum())
-    return (
-        f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
-        f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding gives "
-        "them new weights"
-    )
-
-
-def _control_warnings(skeleton: Skeleton, out: NDArray[np.bool_]) -> list[str]:
-    if not out.any():
-        return []
-    return [
-        f"{out.sum()} of {len(out)} joints are taken for controls, end markers or roots and get "
-        f"no weight: {_names(skeleton, out)}"
-    ]
-
-
-def _stray_warnings(skeleton: Skeleton, stray: NDArray[np.bool_]) -> list[str]:
     if not stray.any():
-        return []
-    return [
+        return carries, []
+    return carries & ~stray, [
         f"the file's weights give under {STRAY:.1%} to {_names(skeleton, stray)}: taken for "
         "controls, which get no weight"
-    ]
-
-
-def _weighted_warnings(skeleton: Skeleton, weighted: NDArray[np.bool_]) -> list[str]:
-    if not weighted.any():
-        return []
-    return [
-        f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
-        "not deforming: new weights give them none"
     ]
 
 

@@ -14,12 +14,12 @@ from .articulation import read_articulation
 from .deforming import with_deform
 from .files import naming
 from .gltf.container import Document
-from .gltf.deform import read_deform
+from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.bones import find_bones
 from .gltf.read.read import malformed, plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
-from .meshes.skeleton_json import read_skeleton_json
+from .meshes.mesh_files import read_skeleton_json
 from .rignet import read_rignet_skeleton
 from .scenes.document import scene_document
 from .scenes.formats import SCENES, scene_arrays

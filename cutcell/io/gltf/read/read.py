@@ -16,7 +16,7 @@ from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
 from ...weights import ReadWeights, sum_warnings
 from ..container import Document, read_document
-from ..deform import read_deform
+from ..influences import read_deform
 from ..nodes import Nodes
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .bare import read_bare

@@ -16,10 +16,10 @@ from ...deforming import KEY
 from ...materials.corners import vertex_normals
 from ...materials.gltf_colored import with_rig_looks
 from ..builder import GltfBuilder
-from ..container import Document, json_bytes, pack_glb, with_whole_names
+from ..container import Document, with_whole_names
 from ..influences import pack_influences, store_influences
 from ..nodes import decompose
-from .buffer_file import buffer_file, relative_uri
+from .write import packed
 
 MAX_JOINTS = 2**16
 MAX_SHIFT = 1e-3
@@ -36,13 +36,8 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
-    document, data = _document(rig)
-    data = with_rig_looks(document, data, rig).finish()
-    if path.suffix.lower() != ".gltf":
-        return {path: pack_glb(json_bytes(document), data, [])}
-    buffer = buffer_file(path, Document(path, document, [data]))
-    document["buffers"][0]["uri"] = relative_uri(buffer)
-    return {buffer: data, path: json_bytes(document)}
+    buffer = with_rig_looks(*_document(rig), rig)
+    return packed(buffer, Document(path, {}, []), path, {})
 
 
 def check_fits(rig: Rig) -> None:

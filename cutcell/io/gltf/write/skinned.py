@@ -18,8 +18,7 @@ from ....errors import WeightsError
 from ....rig import Rig
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
-from ..deform import store_deform
-from ..influences import pack_influences, store_influences
+from ..influences import pack_influences, store_deform, store_influences
 from ..read.bare import BareSource, StoredMesh
 from ..read.primitives import draws_triangles
 from .fresh import inverses, joint_nodes
