@@ -18,10 +18,10 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig import Part, Rig, Skeleton, TriangleMesh
-from .deforming import KEY, with_deform
+from ..rig import Rig, Skeleton, TriangleMesh
+from .deforming import KEY, loaded_rig
 from .files import HALVES, Allowance, has_halves, one_line, read_bytes, whole_characters
-from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
+from .weights import NO_WEIGHTS, ReadWeights, summed
 
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 REQUIRED = ("vertices", "faces", "joints", "bones")
@@ -44,26 +44,15 @@ def read_articulation(path: Path) -> Rig:
     if count == 0:
         raise SkeletonError("has no joints")
     read = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
-    warnings = list(read.warnings)
     parents, names = _parents(arrays, count), _names(arrays, count)
-    if any(map(has_halves, names)):
-        warnings.append(HALVES)
-    names = tuple(map(whole_characters, names))
-    skeleton = Skeleton(joints, parents, names)
-    stored = _deform(arrays, count, warnings)
-    skeleton, weights, deform_warnings = with_deform(mesh, skeleton, read.weights, stored)
-    return Rig(
-        mesh,
-        skeleton,
-        weights,
-        name=path.stem,
-        warnings=(
-            *warnings,
-            *deform_warnings,
-            *sum_warnings(read.sums, mesh.faces, [Part(path.stem, slice(None))]),
-        ),
-        weight_sums=read.sums,
-    )
+    warnings = [HALVES] if any(map(has_halves, names)) else []
+    skeleton = Skeleton(joints, parents, tuple(map(whole_characters, names)))
+    stored = arrays.get(KEY)
+    if stored is not None and (stored.dtype != np.bool_ or stored.shape != (count,)):
+        warnings.append(f"{KEY} is ignored; it is no array of true or false for each joint")
+        stored = None
+    stored = None if stored is None else stored.astype(np.int8)
+    return loaded_rig(mesh, skeleton, read, path.stem, stored, warnings)
 
 
 def _arrays(data: bytes) -> dict[str, NDArray]:
@@ -132,15 +121,6 @@ def _names(arrays: dict[str, NDArray], count: int) -> tuple[str, ...]:
     if len(names) != count or names.dtype.kind not in "US":
         raise SkeletonError(f"joint_names must be {count} texts, as many as there are joints")
     return tuple(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n) for n in names)
-
-
-def _deform(arrays: dict[str, NDArray], count: int, warnings: list[str]) -> NDArray[np.int8] | None:
-    """Return which joints deform by an archive that cutcell saved, as `with_deform` takes it."""
-    stored = arrays.get(KEY)
-    if stored is None or (stored.dtype == np.bool_ and stored.shape == (count,)):
-        return None if stored is None else stored.astype(np.int8)
-    warnings.append(f"{KEY} is ignored; it is no array of true or false for each joint")
-    return None
 
 
 def _weights(arrays: dict[str, NDArray], vertices: int, joints: int, owner: str) -> ReadWeights:

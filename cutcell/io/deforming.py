@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rig import Skeleton, TriangleMesh
+from ..rig import Part, Rig, Skeleton, TriangleMesh
 from ..rig.deform_joints import deform_joints
 from ..rig.names import is_neutral
 from ..runtime.display import listed
-from .weights import normalised
+from .weights import ReadWeights, normalised, sum_warnings
 
 KEY = "cutcell_deform"
 """Under which a saved file stores for each joint whether it deforms: a joint that got no weight
@@ -61,6 +63,24 @@ def with_deform(
             "not deforming: new weights give them none"
         )
     return replace(skeleton, deform=deform), weights, warnings
+
+
+def loaded_rig(
+    mesh: TriangleMesh,
+    skeleton: Skeleton,
+    read: ReadWeights,
+    name: str,
+    stored: NDArray[np.int8] | None = None,
+    warnings: Iterable[str] = (),
+    source: Any = None,
+) -> Rig:
+    """Return a rig of one part, with the joints that deform; see `with_deform`."""
+    skeleton, weights, more = with_deform(mesh, skeleton, read.weights, stored)
+    more += sum_warnings(read.sums, mesh.faces, [Part(name, slice(None))])
+    told = (*read.warnings, *warnings, *more)
+    return Rig(
+        mesh, skeleton, weights, name=name, warnings=told, weight_sums=read.sums, source=source
+    )
 
 
 def neutral_joints(skeleton: Skeleton) -> NDArray[np.bool_]:

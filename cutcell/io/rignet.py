@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig import Part, Rig, Skeleton, TriangleMesh
-from .deforming import with_deform
+from ..rig import Rig, Skeleton, TriangleMesh
+from .deforming import loaded_rig
 from .files import naming, read_text, whole_characters
 from .materials.obj_materials import ObjSource
 from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
-from .weights import NO_WEIGHTS, ReadWeights, sum_warnings, summed
+from .weights import NO_WEIGHTS, ReadWeights, summed
 
 MAX_DIGITS = 20
 """Of a vertex' number."""
@@ -62,22 +62,9 @@ def read_rignet(path: Path) -> Rig:
         mesh = contents.mesh
     with naming(path):
         rig_text = _parse(text)
-        skeleton_names = tuple(rig_text.positions)
-        read = _weights(rig_text, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton, weights, warnings = with_deform(mesh, _skeleton(rig_text), read.weights)
-        return Rig(
-            mesh,
-            skeleton,
-            weights,
-            name=obj.stem,
-            warnings=(
-                *read.warnings,
-                *warnings,
-                *sum_warnings(read.sums, mesh.faces, [Part(obj.stem, slice(None))]),
-            ),
-            weight_sums=read.sums,
-            source=ObjSource(obj, contents),
-        )
+        read = _weights(rig_text, len(mesh.vertices), f'mesh "{obj.stem}"')
+        source = ObjSource(obj, contents)
+        return loaded_rig(mesh, _skeleton(rig_text), read, obj.stem, source=source)
 
 
 def read_rignet_skeleton(path: Path) -> Skeleton:
@@ -133,10 +120,10 @@ def _skeleton(contents: _Text) -> Skeleton:
     return Skeleton(np.array(list(contents.positions.values())), np.array(parents), tuple(place))
 
 
-def _weights(contents: _Text, vertices: int, names: tuple[str, ...], owner: str) -> ReadWeights:
+def _weights(contents: _Text, vertices: int, owner: str) -> ReadWeights:
     if not contents.skin:
         return NO_WEIGHTS
-    place = {name: j for j, name in enumerate(names)}
+    place = {name: j for j, name in enumerate(contents.positions)}
     rows, columns, values = [], [], []
     for line, tokens in contents.skin:
         is_index = tokens and tokens[0].isdecimal() and len(tokens[0]) <= MAX_DIGITS
@@ -154,7 +141,7 @@ def _weights(contents: _Text, vertices: int, names: tuple[str, ...], owner: str)
             rows.append(vertex)
             columns.append(place[name])
             values.append(one_number(word, line))
-    shape = vertices, len(names)
+    shape = vertices, len(place)
     return summed(np.array(rows, int), np.array(columns, int), np.array(values), shape, owner)
 
 
@@ -208,14 +195,12 @@ def _mesh_goal(path: Path) -> Path:
 
 def word_names(names: tuple[str, ...]) -> list[str]:
     """Return names without spaces, still unique: words are what these lines are made of."""
-    tokens: list[str] = []
-    used: set[str] = set()
+    words: dict[str, None] = {}
     numbers: dict[str, int] = {}
     for name in names:
         word = base = "_".join(whole_characters(name).split()) or "joint"
-        while word in used:
+        while word in words:
             numbers[base] = numbers.get(base, 1) + 1
             word = f"{base}_{numbers[base]}"
-        used.add(word)
-        tokens.append(word)
-    return tokens
+        words[word] = None
+    return list(words)

@@ -83,10 +83,15 @@ class Collected:
     """The images, their uses and what is to be told of materials; each is listed once."""
 
     def __init__(self, notes: Iterable[str] = ()) -> None:
-        self.layers: dict[Layer, int] = {}
+        self._layers: dict[Layer, int] = {}
         self._materials: dict[Hashable, tuple[int, str]] = {}
         self._images: dict[Hashable, StoredImage] = {}
         self._notes: dict[str, None] = dict.fromkeys(notes)
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """The uses of images, in the order of their numbers."""
+        return tuple(self._layers)
 
     @property
     def images(self) -> tuple[StoredImage, ...]:
@@ -112,7 +117,7 @@ class Collected:
         if use.image not in self._images:
             self._images[use.image] = stored()
         use = replace(use, image=list(self._images).index(use.image))
-        return self.layers.setdefault(use, len(self.layers))
+        return self._layers.setdefault(use, len(self._layers))
 
     def note(self, label: str, error: Exception) -> None:
         """Keep in mind what could not be read of a material."""

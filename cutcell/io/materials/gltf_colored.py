@@ -15,9 +15,9 @@ from ..gltf.constants import ELEMENT_ARRAY_BUFFER
 from ..gltf.container import Document
 from ..gltf.read.accessors import find_accessor
 from .corners import Corners, join_corners, surface_piece
-from .face_colors import Collected, FaceColors, face_colors
+from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_images import image_notes
-from .gltf_palette import Group, Palette, Uses, attributes_of
+from .gltf_palette import Group, Palette, attributes_of
 from .surfaces import SurfacePaint, Surfaces
 from .transfer import has_materials, read_corners, read_materials
 
@@ -32,13 +32,11 @@ class _Look(NamedTuple):
 def with_rig_looks(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter:
     """Give a new document the base colours of a rig's file, its normals and texture coordinates."""
     materials = read_materials(rig) if has_materials(rig) else None
-    looks, uses = {0: _Look(None, read_corners(rig))}, Uses([], [], [])
-    if materials is not None:
-        uses = Uses(materials.layers, materials.images, materials.names)
-        looks[0] = looks[0]._replace(colors=materials.body)
-        for number, colors in enumerate(materials.attachments, start=1):
-            looks[number] = _Look(colors, Corners())
-    return _with_looks(document, data, looks, uses)
+    corners = read_corners(rig)
+    if materials is None:
+        return _with_looks(document, data, {0: _Look(None, corners)}, Collected())
+    looks = {k: _Look(one, Corners()) for k, one in enumerate(materials.attachments, start=1)}
+    return _with_looks(document, data, {0: _Look(materials.body, corners), **looks}, materials)
 
 
 def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
@@ -61,8 +59,7 @@ def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> Buffe
         piece = surface_piece(surface, faces, everything)
         corners = join_corners(vertices, faces, [] if piece is None else [piece])
         looks[number] = _Look(colors, corners)
-    uses = Uses(list(collected.layers), collected.images, collected.names)
-    return _with_looks(document, data, looks, uses)
+    return _with_looks(document, data, looks, collected)
 
 
 def color_notes(rig: Rig) -> tuple[str, ...]:
@@ -88,7 +85,7 @@ class _Mesh(NamedTuple):
 
 
 def _with_looks(
-    document: dict[str, Any], data: bytes, looks: Mapping[int, _Look], uses: Uses
+    document: dict[str, Any], data: bytes, looks: Mapping[int, _Look], uses: Materials | Collected
 ) -> BufferWriter:
     """Return the writer of a document each of whose meshes has one primitive.
 

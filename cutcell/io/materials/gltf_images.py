@@ -39,7 +39,7 @@ class Embedded(NamedTuple):
 
 def embedded(image: StoredImage) -> Embedded:
     """Return an image as a GLB contains it: PNG and JPEG unchanged, others as PNG."""
-    kind = next((k for start, k in SIGNATURES.items() if image.content.startswith(start)), "")
+    kind = _signed(image.content)
     if kind in EMBEDDABLE:
         return Embedded(kind, image.content)
     try:
@@ -60,6 +60,11 @@ def embedded(image: StoredImage) -> Embedded:
     except Exception:  # the readers of Pillow raise errors of any class
         return Embedded(problem="it is no PNG, JPEG, WebP, BMP or TGA, or damaged")
     return Embedded("image/png", packed.getvalue())
+
+
+def _signed(content: bytes) -> str:
+    """Return the media type of an image by its first bytes, empty if unknown."""
+    return next((kind for start, kind in SIGNATURES.items() if content.startswith(start)), "")
 
 
 def image_notes(images: Sequence[StoredImage]) -> tuple[str, ...]:
@@ -112,8 +117,7 @@ def _content(file: Path) -> bytes | None:
 
 
 def _embed(buffer: BufferWriter, image: dict[str, Any], name: str, content: bytes) -> None:
-    signed = next((m for s, m in SIGNATURES.items() if content.startswith(s)), None)
-    kind = image.get("mimeType") or signed or mimetypes.guess_type(name)[0]
+    kind = image.get("mimeType") or _signed(content) or mimetypes.guess_type(name)[0]
     if kind is None:
         return
     del image["uri"]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,19 +11,11 @@ from numpy.typing import NDArray
 from ...runtime.colors import linear
 from ..files import whole_characters
 from ..gltf.buffer import BufferWriter
-from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
+from .face_colors import BLENDED, OPAQUE, Collected, FaceColors, Materials
 from .gltf_images import Embedded, embedded
 
 FULL = 2**16 - 1
 PLAIN = "plain"
-
-
-class Uses(NamedTuple):
-    """Layers, images and names by the numbers in `FaceColors`; see `Materials`."""
-
-    layers: Sequence[Layer]
-    images: Sequence[StoredImage]
-    names: Sequence[str]
 
 
 class Group(NamedTuple):
@@ -36,8 +27,7 @@ class Group(NamedTuple):
     varied: bool  # whether they have texture coordinates, and colours by vertex
 
 
-@dataclass(frozen=True)
-class _MaterialKey:
+class _MaterialKey(NamedTuple):
     """A material: number of the name, layer, whether it is blended, and factor as bytes."""
 
     name: int
@@ -47,14 +37,9 @@ class _MaterialKey:
 
 
 class Palette:
-    """The materials of a document that is being made.
+    """The materials of a document that is being made; `uses` has those of the faces."""
 
-    Parameters
-    ----------
-    uses : Uses
-    """
-
-    def __init__(self, uses: Uses) -> None:
+    def __init__(self, uses: Materials | Collected) -> None:
         self._uses = uses
         self._embedded = [embedded(image) for image in uses.images]
         self._keys: dict[_MaterialKey, int] = {}

@@ -41,7 +41,7 @@ def has_materials(rig: Rig) -> bool:
         return source.document.surfaces.coloured
     nodes, document = source.document.items("nodes"), source.document
     drawn = [primitive for primitive, _, _ in _of_body(document, source)]
-    for node in _attached(source):
+    for node in getattr(source, "attached", ()):
         drawn += primitives(document, nodes[node]["mesh"], document.label("nodes", node))
     return is_coloured(document, drawn)
 
@@ -61,14 +61,16 @@ def read_materials(rig: Rig) -> Materials | None:
         return _complete(body, [], collected)
     if not isinstance(source, GltfSource | BareSource):
         return None
-    attached = _attached(source)
+    attached = getattr(source, "attached", ())
     if len(attached) != len(rig.attachments):
         return None
     # Its own store of what was decoded: others may read the same document now, or forget.
     stored = source.document
     document = Document(stored.path, stored.json, stored.buffers, stored.size)
     document.surfaces = stored.surfaces
-    collected, paint = _paint(document)
+    surfaces = document.surfaces
+    collected = Collected(() if surfaces is None else surfaces.notes)
+    paint = (PrimitivePaint if surfaces is None else SurfacePaint)(surfaces or document, collected)
     face_count = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
     document.allowance.take(face_count * BYTES_PER_FACE, "its materials")
     body = face_colors(rig.mesh.faces, _of_body(document, source), paint)
@@ -127,21 +129,8 @@ def _complete(
     whole = [colors for colors in hung if colors is not None]
     if body is None or len(whole) < len(hung):
         return None
-    layers = tuple(collected.layers)
-    return Materials(body, tuple(whole), layers, collected.images, collected.notes, collected.names)
-
-
-def _paint(document: Document) -> tuple[Collected, Any]:
-    surfaces = document.surfaces
-    if surfaces is None:
-        collected = Collected()
-        return collected, PrimitivePaint(document, collected)
-    collected = Collected(surfaces.notes)
-    return collected, SurfacePaint(surfaces, collected)
-
-
-def _attached(source: GltfSource | BareSource) -> tuple[int, ...]:
-    return source.attached if isinstance(source, GltfSource) else ()
+    found = collected.layers, collected.images, collected.notes, collected.names
+    return Materials(body, tuple(whole), *found)
 
 
 def _of_body(
