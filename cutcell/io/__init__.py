@@ -151,8 +151,12 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
     """Meet what would stop `save` before the work whose result is to be saved."""
     kind = path.suffix.lower()
     with naming(path):
+        if kind == ".fbx":
+            raise FileError(
+                f"FBX can be read, not written; save it as {path.stem}.glb, which Blender imports"
+            )
         if kind not in SAVED:
-            raise FileError(_not_written(path))
+            raise FileError(f'a rig cannot be saved as "{path.suffix}"; end the name in {WRITABLE}')
         check_place(path)
         if rig is None or kind == ".npz":
             return
@@ -163,13 +167,6 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
         if isinstance(rig.source, GltfSource) or can_be_skinned(rig):
             none = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
             _gltf_files(rig.with_weights(none), path)
-
-
-def _not_written(path: Path) -> str:
-    """Return why no rig can be saved under a name, and under which it can."""
-    if path.suffix.lower() == ".fbx":
-        return f"FBX can be read, not written; save it as {path.stem}.glb, which Blender imports"
-    return f'a rig cannot be saved as "{path.suffix}"; end the name in {WRITABLE}'
 
 
 def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:

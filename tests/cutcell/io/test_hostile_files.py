@@ -152,7 +152,7 @@ def test_an_array_that_is_not_what_its_header_says(tmp_path, header, message):
 
 
 def test_an_array_of_zeros_that_takes_no_room_in_the_file(tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell.io.allowance.LEAST", 2**20)
+    monkeypatch.setattr("cutcell.io.files.LEAST", 2**20)
     path = with_header(tmp_path, plain("(2000000,)"), bytes(16_000_000))
     refused(path, '"odd.npy" would take 32.0 MB of memory, and a file of')
 

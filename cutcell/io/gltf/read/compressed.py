@@ -113,18 +113,13 @@ def _decoded(document: Document, compressed: dict[str, Any], user: str) -> NDArr
 def decompress_draco(document: Document) -> None:
     """Replace compressed primitives by plain ones; the numbers of accessors stay."""
     compressed = _compressed(document)
-    packed = [
-        (user, primitive, extension)
-        for user, primitive, extension in compressed
-        if not _plain(document, extension)
-    ]
+    packed = [one for one in compressed if not _plain(document, one[2])]
     views = list(dict.fromkeys(extension["bufferView"] for _, _, extension in packed))
     if packed:
         decoded = _decode(document, views)
-        unpacking = _Unpacking(BufferWriter(document.json, document.buffers, (), views), decoded)
+        unpacking = _Unpacking(document, views, decoded)
         for user, primitive, extension in packed:
-            mesh = views.index(extension["bufferView"])
-            unpacking.fill_primitive(document, primitive, extension, mesh, user)
+            unpacking.fill_primitive(primitive, extension, user)
         document.buffers = [unpacking.writer.finish()]
     if compressed:
         _forget_extension(document, DRACO, "Draco")
@@ -134,9 +129,8 @@ def _compressed(document: Document) -> list[tuple[str, dict[str, Any], dict[str,
     """Take the extension off all primitives; return their labels, themselves and what it said."""
     compressed = []
     for m, mesh in enumerate(document.items("meshes")):
-        if "primitives" not in mesh:
-            continue
-        for k, primitive in enumerate(primitives(document, m, f"meshes[{m}]")):
+        drawn = primitives(document, m, f"meshes[{m}]") if "primitives" in mesh else ()
+        for k, primitive in enumerate(drawn):
             if not _has(primitive, DRACO):
                 continue
             user = f"{document.label('meshes', m)}, primitive {k}"
@@ -170,14 +164,10 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
 
 
 def _bytes(document: Document, view: Any) -> bytes:
-    view_object = document.item("bufferViews", view, DRACO)
-    name = f"bufferViews[{view}]"
-    document.item("buffers", view_object.get("buffer"), name)
-    start, length = (
-        whole(view_object, "byteOffset", name, 0),
-        whole(view_object, "byteLength", name),
-    )
-    data = document.buffers[view_object["buffer"]][start : start + length]
+    owner, name = document.item("bufferViews", view, DRACO), f"bufferViews[{view}]"
+    document.item("buffers", owner.get("buffer"), name)
+    start, length = whole(owner, "byteOffset", name, 0), whole(owner, "byteLength", name)
+    data = document.buffers[owner["buffer"]][start : start + length]
     if len(data) < length or not length:
         raise FileError(f"{name} is cut short: {length} bytes announced, {len(data)} there")
     return data
@@ -186,42 +176,33 @@ def _bytes(document: Document, view: Any) -> bytes:
 class _Unpacking:
     """Writes decoded meshes into the accessors of the primitives that use them."""
 
-    def __init__(self, writer: BufferWriter, decoded: dict[str, NDArray]) -> None:
-        self.writer, self.decoded = writer, decoded
-        self.filled: dict[int, tuple[int, str]] = {}
-        """By accessor, its mesh and attribute."""
+    def __init__(self, document: Document, views: list[int], decoded: dict[str, NDArray]) -> None:
+        self.document, self.views, self.decoded = document, views, decoded
+        self.writer = BufferWriter(document.json, document.buffers, (), views)
+        self.filled: dict[int, tuple[int, str]] = {}  # by accessor, its mesh and attribute
 
     def fill_primitive(
-        self, document: Document, primitive: dict[str, Any], extension: dict[str, Any], mesh: int,
-        user: str,
-    ) -> None:  # fmt: skip
+        self, primitive: dict[str, Any], extension: dict[str, Any], user: str
+    ) -> None:
         """Fill a primitive's accessors; it draws plain triangles afterwards."""
+        mesh, named = self.views.index(extension["bufferView"]), primitive["attributes"]
         faces = self.decoded[f"faces_{mesh}"].reshape(-1, 1)
-        key = mesh, "indices"
-        primitive["indices"] = self._fill(document, primitive.get("indices"), faces, key, user)
+        primitive["indices"] = self._fill(primitive.get("indices"), faces, (mesh, "indices"), user)
         primitive["mode"] = TRIANGLES
         count = None
         for name, unique in extension["attributes"].items():
             values = self.decoded.get(f"values_{mesh}_{unique}")
-            if values is None or name not in primitive["attributes"]:
+            if values is None or name not in named:
                 raise FileError(f"{user}: {name} is not in its Draco data")
             if count not in (None, len(values)):
                 raise FileError(f"{user}: its attributes hold {count} and {len(values)} vertices")
             count = len(values)
-            primitive["attributes"][name] = self._fill(
-                document,
-                primitive["attributes"][name],
-                values.reshape(count, -1),
-                (mesh, name),
-                user,
-            )
+            named[name] = self._fill(named[name], values.reshape(count, -1), (mesh, name), user)
 
-    def _fill(
-        self, document: Document, index: Any, values: NDArray, key: tuple[int, str], user: str
-    ) -> int:
+    def _fill(self, index: Any, values: NDArray, key: tuple[int, str], user: str) -> int:
         """Fill an accessor; a copy of it if another mesh has filled it."""
         name = f"{user}, {key[1]}"
-        accessor = document.item("accessors", index, name)
+        accessor = self.document.item("accessors", index, name)
         if index in self.filled:
             if self.filled[index] == key:
                 return index
@@ -229,8 +210,7 @@ class _Unpacking:
             index = len(self.writer.accessors) - 1
         self.filled[index] = key
         values = _typed(values, accessor, name)
-        is_index = key[1] == "indices"
-        target = ELEMENT_ARRAY_BUFFER if is_index else ARRAY_BUFFER
+        target = ELEMENT_ARRAY_BUFFER if key[1] == "indices" else ARRAY_BUFFER
         self.writer.append(accessor, values, target)
         if "min" in accessor or "max" in accessor:
             accessor.update(min=values.min(axis=0).tolist(), max=values.max(axis=0).tolist())

@@ -66,7 +66,6 @@ class _Edit:
             matrix = np.linalg.inv(before) @ self._frame_above(f) @ np.linalg.inv(self.inverse[f])
             _set_matrix(self.document["nodes"][node], matrix)
         frozen = {self.source.nodes[f] for f in removed}
-        animations = []
         for animation in self.document.get("animations", []):
             animation["channels"] = [
                 channel
@@ -74,12 +73,10 @@ class _Edit:
                 if channel["target"].get("node") not in frozen
                 or channel["target"].get("path") == "weights"
             ]
-            if animation["channels"]:  # glTF has no motion of nothing
-                animations.append(animation)
-        if "animations" in self.document:
-            self.document["animations"] = animations
-            if not animations:
-                del self.document["animations"]
+        animations = self.document.get("animations", [])
+        animations[:] = [animation for animation in animations if animation["channels"]]
+        if not animations:  # glTF has no motion of nothing
+            self.document.pop("animations", None)
 
     def add_joints(self) -> None:
         """Make nodes for joints that were added, turned as their parents are."""

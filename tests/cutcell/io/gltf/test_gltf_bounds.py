@@ -124,7 +124,7 @@ def many_scenery(builder):
 def test_what_a_file_asks_for_without_holding_it_is_refused_before_it_is_taken(
     loaded, ask, monkeypatch
 ):
-    monkeypatch.setattr("cutcell.io.allowance.LEAST", 2**24)
+    monkeypatch.setattr("cutcell.io.files.LEAST", 2**24)
     builder = column()
     ask(builder)
     tracemalloc.start()
