@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...rig import Skeleton
-from ...rig.deform_joints.names import words
+from ...rig.names import words
 
 _FACE = (
     "brow brows cheek cheeks chin ear ears eye eyes jaw lash lashes lid lids lip lips mouth "

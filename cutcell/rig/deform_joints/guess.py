@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...errors import ParameterError
 from ..mesh import TriangleMesh
-from ..rig import FAR_OUTSIDE
-from ..skeleton import Skeleton
-from .body import SPACING, Body
-from .names import (
+from ..names import (
+    folded,
     is_control,
     is_end_marker,
     is_fingertip,
@@ -24,6 +26,9 @@ from .names import (
     is_socket,
     may_be_control,
 )
+from ..rig import FAR_OUTSIDE, Rig
+from ..skeleton import Skeleton
+from .body import SPACING, Body
 
 OUTSIDE = 0.04
 """Of the longest side: a joint that is farther from the body moves none of it."""
@@ -208,3 +213,58 @@ class _Guess:
             and beyond[around].max() < NOTHING_BEYOND * length
             and apart[around].max() < length / 2
         )
+
+
+def choose_deform(
+    rig: Rig, deform: Sequence[str] = (), no_deform: Sequence[str] = (), *, fresh: bool = False
+) -> Rig:
+    """Return the same rig with other joints that may carry weight.
+
+    Parameters
+    ----------
+    rig : Rig
+    deform, no_deform : sequences of str
+        Names of joints that shall, or shall not, carry weight. ``*`` and ``?`` stand for any
+        letters and for one; upper and lower case are the same, and so are full and half width.
+        A joint that both name carries none.
+    fresh : bool
+        Forget the file's weights first, and which joints they are of: `deform_joints` says.
+
+    Returns
+    -------
+    Rig
+
+    Raises
+    ------
+    ParameterError
+        A name that no joint has, or no joint left that may carry weight.
+
+    Examples
+    --------
+    >>> rig = cutcell.choose_deform(rig, no_deform=["*_IK", "Root"])  # doctest: +SKIP
+    """
+    skeleton = rig.skeleton
+    chosen = skeleton.deform.copy()
+    if fresh and len(chosen):
+        rig = rig.with_weights(None)
+        chosen = deform_joints(rig.mesh, skeleton).deform.copy()
+    for patterns, value in ((deform, True), (no_deform, False)):
+        for pattern in patterns:
+            chosen[_named(skeleton, pattern)] = value
+    if len(chosen) and not chosen.any():
+        raise ParameterError("no joint is left that may carry weight; choose fewer to leave out")
+    return replace(rig, skeleton=replace(skeleton, deform=chosen))
+
+
+def _named(skeleton: Skeleton, pattern: str) -> list[int]:
+    wanted, names = folded(pattern), [folded(name) for name in skeleton.names]
+    found = [j for j, name in enumerate(names) if name == wanted]
+    # A name may hold what stands for other letters; then it means itself.
+    found = found or [j for j, name in enumerate(names) if fnmatchcase(name, wanted)]
+    if not found:
+        close = [
+            skeleton.names[names.index(one)] for one in get_close_matches(wanted, names, 3, 0.4)
+        ]
+        hint = f"; did you mean {' or '.join(close)}?" if close else ""
+        raise ParameterError(f'no joint is called "{pattern}"{hint}')
+    return found

@@ -11,7 +11,7 @@ from ...geodesics.bones import TIE
 from ...geometry.vectors import segment_fraction
 from ...method import RIG_REACH
 from ...rig import Skeleton
-from ...rig.deform_joints.names import words
+from ...rig.names import words
 from ...runtime.compiled import compiled
 from ..rig_falloff.division import MIN_CELLS, Division, _facing
 

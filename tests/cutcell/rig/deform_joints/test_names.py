@@ -2,7 +2,7 @@
 
 import pytest
 
-from cutcell.rig.deform_joints import names
+from cutcell.rig import names
 
 
 @pytest.mark.parametrize(
