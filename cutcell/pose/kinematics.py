@@ -1,4 +1,4 @@
-"""Forward kinematics: from rotations of joints to skinning matrices."""
+"""Moving a rig: rotations of joints, linear blend skinning, and clips played or made."""
 
 from __future__ import annotations
 
@@ -170,13 +170,9 @@ def swing(
     if not (np.isfinite(seconds) and np.isfinite(fps) and seconds > 0 and fps > 0):
         raise ParameterError(f"seconds and fps must be positive, not {seconds} and {fps}")
     times = np.linspace(0, seconds, max(round(seconds * fps), 1) + 1)
-    rest = np.tile(np.eye(3), (len(skeleton.joints), 1, 1))
-    frames = []
-    for angle in degrees * np.sin(2 * np.pi * times / seconds):
-        rotations = rest.copy()
-        rotations[joint] = axis_rotation(axis, angle)
-        frames.append(forward_kinematics(skeleton, rotations))
-    return Clip(f"swing {skeleton.names[joint]}", times, np.array(frames))
+    angles = degrees * np.sin(2 * np.pi * times / seconds)
+    frames = [rotate_joint(skeleton, joint, axis, angle) for angle in angles.tolist()]
+    return Clip(f"swing {skeleton.names[joint]}", times, frames)
 
 
 def linear_blend_skinning(

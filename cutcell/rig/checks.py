@@ -117,14 +117,17 @@ def as_array(
         if array.dtype.kind not in NUMBERS:
             raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
         if np.issubdtype(dtype, np.integer) and array.dtype.kind == "f":
-            array = _quietly(array, np.float64)  # half precision knows no such number
+            with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
+                array = array.astype(np.float64)  # half precision knows no such number
             array = np.where(np.abs(array) <= EXACT, array, 0.5)
             if not np.array_equal(array, np.round(array)):
                 raise error(f"{name} must be whole numbers")
         if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():
             raise error(f"{name} must be True or False each")
-        if not _is_frozen(array, dtype):
-            array = _quietly(array, dtype)
+        flags = array.flags
+        if flags.writeable or not (array.dtype == dtype and flags.c_contiguous and flags.aligned):
+            with np.errstate(invalid="ignore"):
+                array = np.array(array, dtype=dtype)
     except (TypeError, ValueError, OverflowError) as e:
         if isinstance(e, error):
             raise
@@ -135,18 +138,6 @@ def as_array(
     ):
         raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
     return array
-
-
-def _quietly(array: NDArray, dtype: Any) -> NDArray:
-    """Return a copy of another type, in which a signalling NaN is a quiet one."""
-    with np.errstate(invalid="ignore"):
-        return np.array(array, dtype=dtype)
-
-
-def _is_frozen(array: NDArray, dtype: Any) -> bool:
-    """Return whether an array can be used as it is: read-only, and as it would be copied."""
-    flags = array.flags
-    return array.dtype == dtype and not flags.writeable and flags.c_contiguous and flags.aligned
 
 
 def frozen(array: NDArray) -> NDArray:

@@ -183,10 +183,10 @@ def _check_acyclic(parents: NDArray, names: tuple[str, ...]) -> None:
     joint = int(np.flatnonzero(above >= 0)[0])
     for _ in range(len(parents)):
         joint = int(parents[joint])  # walk until surely on the cycle itself
-    cycle = [joint]
-    while parents[cycle[-1]] != joint:
+    cycle = [joint, int(parents[joint])]
+    while cycle[-1] != joint:
         cycle.append(int(parents[cycle[-1]]))
-    labels = [f'"{names[j]}"' for j in [*cycle, joint]]
+    labels = [f'"{names[j]}"' for j in cycle]
     if len(labels) > LONG_CYCLE:
         labels[LONG_CYCLE // 2 : -LONG_CYCLE // 2] = ["..."]
     chain = " -> ".join(labels)

@@ -22,12 +22,7 @@ BLOCK = 2_000_000
 
 
 class Body:
-    """Samples of a surface, each with the area that it stands for.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    """
+    """Samples of the surface of a mesh, each with the area that it stands for."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
         low, high = mesh.bounds
@@ -47,15 +42,14 @@ class Body:
         return np.asarray(self._tree.query(points)[0])
 
     def inside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell for points (p, 3) at least `SPACING` from the surface whether it encloses them."""
+        """Return which points (p, 3) the surface encloses; `SPACING` from it at least."""
         winding = np.zeros(len(points))
         step = max(1, BLOCK // len(self._points))
         for first in range(0, len(points), step):
             away = self._points - points[first : first + step, None]
             cubed = np.einsum("psi,psi->ps", away, away) ** 1.5
-            winding[first : first + step] = (
-                np.einsum("psi,si->ps", away, self._areas) / cubed
-            ).sum(axis=1)
+            covered = np.einsum("psi,si->ps", away, self._areas) / cubed
+            winding[first : first + step] = covered.sum(axis=1)
         return np.abs(winding) > INSIDE * 4 * np.pi
 
     def encloses(self, point: NDArray[np.float64]) -> bool:
@@ -73,8 +67,7 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS).astype(int)
     area = normals(corners) / 2
-    points: list[NDArray] = []
-    areas: list[NDArray] = []
+    points, areas = [], []
     for n in np.unique(splits):
         mine = splits == n
         weights = _middles(int(n))

@@ -1,4 +1,4 @@
-"""Which joints may carry weight, from their names and from where they lie in the body."""
+"""Which joints may carry weight: by their names, where they lie in the body, or a choice."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class DeformJoints:
 
 
 def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
-    """Tell bones from controls, end markers, sockets and roots, without looking at weights.
+    """Classify joints as bones, controls, end markers, sockets or roots, without weights.
 
     Names decide where riggers and exporters have words for it; else where a joint lies: what is
     outside of the body moves nothing, and neither does a joint with no skin beyond it at the end
@@ -90,13 +90,13 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
         The skeleton has no joints.
     """
     skeleton.require_joints()
-    found = _Guess(mesh, skeleton)
-    found.by_name()
-    if found.is_body:
-        found.by_place()
-    if not found.deform.any():  # a rig of nothing but controls: then they are what moves it
+    guess = _Guess(mesh, skeleton)
+    guess.by_name()
+    if guess.is_body:
+        guess.by_place()
+    if not guess.deform.any():  # a rig of nothing but controls: then they are what moves it
         return DeformJoints(np.ones(len(skeleton.joints), bool), (BONE,) * len(skeleton.joints))
-    return DeformJoints(found.deform, tuple(found.reason))
+    return DeformJoints(guess.deform, tuple(guess.reason))
 
 
 class _Guess:
@@ -125,13 +125,13 @@ class _Guess:
             if any(marked) and not marked[j]:
                 self._rule_out(j, "others are marked DEF")
                 continue
-            is_marker = is_end_marker(self.names[j]) or is_fingertip(self.names[j])
-            is_marker |= of_mmd and is_mmd_tip(self.names[j])
+            name = self.names[j]
+            is_marker = is_end_marker(name) or is_fingertip(name) or (of_mmd and is_mmd_tip(name))
             if is_marker and not len(self._bones_below(j)):
                 self._rule_out(j, "end marker, by its name")
-            elif is_socket(self.names[j]):
+            elif is_socket(name):
                 self._rule_out(j, "holds things, by its name")
-            elif is_control(self.names[j]) or (of_mmd and is_mmd_control(self.names[j])):
+            elif is_control(name) or (of_mmd and is_mmd_control(name)):
                 self._rule_out(j, "control, by its name")
         self._by_name_and_place(np.array([may_be_control(name) for name in self.names]))
 
@@ -205,14 +205,10 @@ class _Guess:
         if length == 0 or length > 3 * np.linalg.norm(joints[parent] - joints[parents[parent]]):
             return False
         away = self.vertices - joints[joint]
-        apart = np.linalg.norm(away, axis=1)
-        beyond = (away @ bone) / length
+        apart, beyond = np.linalg.norm(away, axis=1), (away @ bone) / length
         around = (apart < length) & (beyond > -0.05 * length)
-        return bool(
-            around.any()
-            and beyond[around].max() < NOTHING_BEYOND * length
-            and apart[around].max() < length / 2
-        )
+        no_skin = beyond.max(initial=-1, where=around) < NOTHING_BEYOND * length
+        return bool(around.any() and no_skin and apart[around].max() < length / 2)
 
 
 def choose_deform(
@@ -262,9 +258,8 @@ def _named(skeleton: Skeleton, pattern: str) -> list[int]:
     # A name may hold what stands for other letters; then it means itself.
     found = found or [j for j, name in enumerate(names) if fnmatchcase(name, wanted)]
     if not found:
-        close = [
-            skeleton.names[names.index(one)] for one in get_close_matches(wanted, names, 3, 0.4)
-        ]
+        near = get_close_matches(wanted, names, 3, 0.4)
+        close = [skeleton.names[names.index(name)] for name in near]
         hint = f"; did you mean {' or '.join(close)}?" if close else ""
         raise ParameterError(f'no joint is called "{pattern}"{hint}')
     return found
