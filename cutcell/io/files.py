@@ -117,15 +117,10 @@ thousand joints for each vertex take some 200 times as much as what they are sto
 
 
 class Allowance:
-    """The rest of the memory that a file may use.
+    """The rest of the memory that a file of some bytes, with all that belongs to it, may use.
 
     A few bytes can ask for any amount: an accessor without data, one mesh that is used in a
     thousand places, a header that announces more than follows.
-
-    Parameters
-    ----------
-    size : int
-        Bytes of the file, with all that belongs to it.
     """
 
     def __init__(self, size: int) -> None:
@@ -157,11 +152,7 @@ def _readable(size: float) -> str:
 
 
 def whole_characters(text: str) -> str:
-    """Return a text with � in place of each half of a character.
-
-    Characters beyond the first 65,536 are pairs of surrogates in UTF-16 and in JSON's escapes. A
-    surrogate alone is no character: UTF-8 cannot hold it, and many readers refuse JSON with it.
-    """
+    """Return a text with � in place of each surrogate without its pair, which is no character."""
     return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 

@@ -46,6 +46,10 @@ class BoundSkin:
     parents: list[int]  # the nearest joint above, -1 for none
     order: list[int]  # the joints, parents first
     corners: NDArray[np.float64]  # (2, 3): of the box around the vertices
+    nodes: list[int]  # of the joints
+    has_binds: bool = (
+        True  # inverse bind matrices; without them joints are at their nodes
+    )
     mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
     """Of those, joints that stay where their matrix was, with their places."""

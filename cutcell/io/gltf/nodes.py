@@ -14,26 +14,18 @@ from .container import Document, indices
 
 
 class Nodes:
-    """All nodes as arrays.
+    """All nodes as arrays."""
 
-    Attributes
-    ----------
-    parents : list of int
-        Parent of each node, -1 for none.
-    levels : list of int arrays
-        Nodes by depth, roots first.
-    depth : array, shape (k,), int
-    translation, rotation, scale : arrays, shape (k, 3), (k, 4), (k, 3)
-        Rest pose; rotations are quaternions (x, y, z, w).
-    local, world : arrays, shape (k, 4, 4)
-        Matrices of the rest pose.
-    """
+    translation: NDArray[np.float64]  # (k, 3), of the rest pose
+    rotation: NDArray[np.float64]  # (k, 4), quaternions (x, y, z, w)
+    scale: NDArray[np.float64]  # (k, 3)
+    local: NDArray[np.float64]  # (k, 4, 4), matrices of the rest pose
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.raw = document.items("nodes")
-        self.parents = _parents(document)
-        self.levels = _levels(document, self.parents)
+        self.parents = _parents(document)  # -1 for none
+        self.levels = _levels(document, self.parents)  # nodes by depth, roots first
         self.depth = np.zeros(len(self.raw), int)
         for depth, level in enumerate(self.levels):
             self.depth[level] = depth
@@ -183,22 +175,13 @@ def compose(translation: NDArray, rotation: NDArray, scale: NDArray) -> NDArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         q = np.where(norm == 0, [0.0, 0.0, 0.0, 1.0], rotation / norm)
     x, y, z, w = np.moveaxis(q, -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+    )
     out = np.zeros((*q.shape[:-1], 4, 4))
-    out[..., 0, 0], out[..., 0, 1], out[..., 0, 2] = (
-        1 - 2 * (y * y + z * z),
-        2 * (x * y - z * w),
-        2 * (x * z + y * w),
-    )
-    out[..., 1, 0], out[..., 1, 1], out[..., 1, 2] = (
-        2 * (x * y + z * w),
-        1 - 2 * (x * x + z * z),
-        2 * (y * z - x * w),
-    )
-    out[..., 2, 0], out[..., 2, 1], out[..., 2, 2] = (
-        2 * (x * z - y * w),
-        2 * (y * z + x * w),
-        1 - 2 * (x * x + y * y),
-    )
+    out[..., :3, :3] = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
     out[..., :3, :3] *= scale[..., None, :]
     out[..., :3, 3] = translation
     out[..., 3, 3] = 1

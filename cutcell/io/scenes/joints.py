@@ -143,6 +143,7 @@ def _bound(
         [number[a] for a in above],
         np.argsort(skin.joints, kind="stable").tolist(),  # parents come before their children
         np.array([points.min(axis=0), points.max(axis=0)]),
+        skin.joints,
     )
 
 

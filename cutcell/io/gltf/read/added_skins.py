@@ -10,7 +10,6 @@ from __future__ import annotations
 import base64
 from collections.abc import Iterable, Iterator
 from copy import deepcopy
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,17 +155,10 @@ def moved(points: NDArray, matrix: NDArray) -> NDArray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-class _Hanging(NamedTuple):
-    """A mesh without a skin below a joint."""
-
-    node: int
-    joint: int
-    to_rig: NDArray[np.float64]
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-
-
-def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[_Hanging]:
+def _hanging(
+    document: Document, nodes: Nodes, bind: Bind
+) -> Iterator[tuple[int, int, NDArray[np.float64]]]:
+    """Yield nodes with a mesh without a skin below a joint, the joint, the matrix to the rig."""
     place = {node: j for j, node in enumerate(bind.nodes)}
     nearest = nodes.nearest(place)
     # From the mesh up to the joint by the local transforms: a joint that is scaled to nothing at
@@ -176,15 +168,15 @@ def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[_Hanging]
         if "mesh" not in node or "skin" in node or nearest[i] < 0:
             continue
         joint = place[nearest[i]]
-        vertices, faces, drawn = read_triangles(document, node["mesh"], document.label("nodes", i))
+        drawn = read_triangles(document, node["mesh"], document.label("nodes", i))[2]
         if drawn and local[i, :3, :3].any():
-            yield _Hanging(i, joint, np.linalg.inv(bind.inverse[joint]) @ local[i], vertices, faces)
+            yield i, joint, np.linalg.inv(bind.inverse[joint]) @ local[i]
 
 
 def bind_accessories(document: Document, nodes: Nodes, bind: Bind) -> dict[int, int]:
     """Give skins to the meshes of the scene without one; return the joint of each that has one."""
-    hanging = {one.node: one for one in _hanging(document, nodes, bind)}
-    to_rig = {i: one.to_rig for i, one in hanging.items()}
+    hanging = {i: (joint, to_rig) for i, joint, to_rig in _hanging(document, nodes, bind)}
+    to_rig = {i: matrix for i, (_, matrix) in hanging.items()}
     if has_volume(bind.world):
         from_scene = np.linalg.inv(bind.world)
         unskinned = (
@@ -197,20 +189,22 @@ def bind_accessories(document: Document, nodes: Nodes, bind: Bind) -> dict[int, 
         if draws_mesh(document, nodes, i) and not vanishes(nodes, i) and has_volume(matrix)
     }
     add_skins(document, nodes, bind, to_rig)
-    return {nodes.raw[i]["mesh"]: hanging[i].joint for i in to_rig if i in hanging}
+    return {nodes.raw[i]["mesh"]: hanging[i][0] for i in to_rig if i in hanging}
 
 
 def read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int, Attachment]:
     """Return the attachment of each node that has one."""
     hidden = hidden_nodes(nodes)
     attachments: dict[int, Attachment] = {}
-    for i, joint, to_rig, vertices, corners in _hanging(document, nodes, bind):
-        document.allowance.take(vertices.nbytes + corners.nbytes, document.label("nodes", i))
+    for i, joint, to_rig in _hanging(document, nodes, bind):
+        label = document.label("nodes", i)
+        vertices, corners, _ = read_triangles(document, nodes.raw[i]["mesh"], label)
+        document.allowance.take(vertices.nbytes + corners.nbytes, label)
         faces = corners[:, ::-1] if np.linalg.det(to_rig[:3, :3]) < 0 else corners
         name = nodes.raw[i].get("name") or f"attachment {len(attachments)}"
         try:
             mesh = TriangleMesh(moved(vertices, to_rig), faces)  # type: ignore[arg-type]
         except MeshError as e:
-            raise MeshError(f"{document.label('nodes', i)}: {e}") from None
+            raise MeshError(f"{label}: {e}") from None
         attachments[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
     return attachments

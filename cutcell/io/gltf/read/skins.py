@@ -18,35 +18,24 @@ from .accessors import read_accessor
 from .primitives import draws_triangles, joint_shares, primitives, read_positions
 
 
-@dataclass(frozen=True, eq=False)
-class StoredSkin:
-    """A skin as it is in a file."""
-
-    nodes: list[int]  # the node of each of its joints
-    bound: BoundSkin
-    has_binds: bool
-    """Whether it has inverse bind matrices; without them joints are where their nodes are."""
-
-    def votes(self, to_rig: NDArray) -> tuple[NDArray, NDArray]:
-        """Return where trusted joints say that the rig stands, and how much each counts.
-
-        Shapes: to_rig (4, 4); returns (k, 4, 4), (k,).
-        """
-        at = self.bound.trusted() if self.has_binds else []
-        return self.bound.skinning[at] @ np.linalg.inv(to_rig), self.bound.votes(at)
-
-    def stands(self, votes: Sequence[tuple[NDArray, NDArray]]) -> NDArray[np.float64]:
-        """Return the matrix from its bind space to the scene, by the votes of some skins."""
-        matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
-        bound, k = self.bound, self.bound.topmost()
-        topmost = None if k is None else bound.skinning[k]
-        if len(shares):
-            is_control = k is not None and not bound.is_held[k]
-            return rest_world(matrices, shares, topmost, is_control, bound.corners)
-        return np.eye(4) if topmost is None else topmost
+def _votes(skin: BoundSkin, to_rig: NDArray) -> tuple[NDArray, NDArray]:
+    """Return where trusted joints say that the rig stands, (k, 4, 4), and their shares (k,)."""
+    at = skin.trusted() if skin.has_binds else []
+    return skin.skinning[at] @ np.linalg.inv(to_rig), skin.votes(at)
 
 
-def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, StoredSkin]:
+def _stands(skin: BoundSkin, votes: Sequence[tuple[NDArray, NDArray]]) -> NDArray[np.float64]:
+    """Return the matrix from a skin's bind space to the scene, by the votes of some skins."""
+    matrices, shares = (np.concatenate(arrays) for arrays in zip(*votes, strict=True))
+    k = skin.topmost()
+    topmost = None if k is None else skin.skinning[k]
+    if len(shares):
+        is_control = k is not None and not skin.is_held[k]
+        return rest_world(matrices, shares, topmost, is_control, skin.corners)
+    return np.eye(4) if topmost is None else topmost
+
+
+def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, BoundSkin]:
     """Return skins, with other matrices where those of the file contradict the nodes."""
     in_scene = set(nodes.in_scene())
     stored = {}
@@ -56,9 +45,9 @@ def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, 
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             stored[skin] = _read_skin(document, nodes, skin, users)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        mend([one.bound for one in stored.values() if one.has_binds])
+        mend([one for one in stored.values() if one.has_binds])
     for skin, one in stored.items():
-        bad = np.flatnonzero(~invertible(one.bound.inverse))
+        bad = np.flatnonzero(~invertible(one.inverse))
         if len(bad):
             raise SkeletonError(
                 f"{document.label('skins', skin)}: the inverse bind matrix of the joint "
@@ -80,7 +69,7 @@ def mended_warning(names: list[str]) -> str:
     )
 
 
-def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) -> StoredSkin:
+def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) -> BoundSkin:
     joints = _skin_joints(document, skin)
     inverse, has_binds = _inverse_binds(document, skin, joints)
     shares, corners = _vertices(document, nodes, users, len(joints))
@@ -88,7 +77,7 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
     number = {node: k for k, node in enumerate(joints)} | {-1: -1}
     above = [nodes.parents[node] for node in joints]
     relative = np.concatenate([nodes.relative_to(joints), np.eye(4)[None]])
-    bound = BoundSkin(
+    return BoundSkin(
         inverse,
         shares,
         nodes.world[joints],
@@ -96,8 +85,9 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
         [number[nearest[node]] for node in above],
         np.argsort(nodes.depth[joints], kind="stable").tolist(),
         corners,
+        joints,
+        has_binds,
     )
-    return StoredSkin(joints, bound, has_binds)
 
 
 def _vertices(
@@ -186,49 +176,49 @@ def read_bind(
         shared = [
             k
             for k, node in enumerate(one.nodes)
-            if node in place and place[node] not in mended and not one.bound.mended[k]
+            if node in place and place[node] not in mended and not one.mended[k]
         ]
         is_first = not bind.nodes
         if is_first:
             to_rig = np.eye(4)
         elif shared:
             here = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
-            shares = one.bound.shares[shared]
-            relations = np.linalg.inv(here) @ one.bound.inverse[shared]
+            shares = one.shares[shared]
+            relations = np.linalg.inv(here) @ one.inverse[shared]
             shares = shares if shares.any() else np.ones(len(shared))
-            to_rig = agreed(relations, shares, one.bound.corners)
+            to_rig = agreed(relations, shares, one.corners)
         else:
-            to_rig = np.linalg.inv(bind.world) @ one.stands([one.votes(np.eye(4))])
+            to_rig = np.linalg.inv(bind.world) @ _stands(one, [_votes(one, np.eye(4))])
         if not invertible(to_rig):
             raise SkeletonError(
                 f"{document.label('skins', skin)}: its inverse bind matrices cannot be inverted"
             )
-        moved = one.bound.inverse @ np.linalg.inv(to_rig)
+        moved = one.inverse @ np.linalg.inv(to_rig)
         for k, node in enumerate(one.nodes):
             if node not in place:
                 place[node] = len(bind.nodes)
                 bind.nodes.append(node)
                 bind.inverse.append(moved[k])
-                if one.bound.mended[k]:
+                if one.mended[k]:
                     mended.add(place[node])
-                if k in one.bound.stays:
-                    stays = to_rig @ [*one.bound.stays[k], 1.0]
+                if k in one.stays:
+                    stays = to_rig @ [*one.stays[k], 1.0]
                     bind.stays[place[node]] = stays[:3]
                 if not one.has_binds and len(one.nodes) > 1:
                     bind.unbound.add(place[node])
-            elif place[node] in mended and not one.bound.mended[k]:
+            elif place[node] in mended and not one.mended[k]:
                 mended.remove(place[node])
                 bind.stays.pop(place[node], None)
                 bind.inverse[place[node]] = moved[k]
         bind.skins[skin] = [place[node] for node in one.nodes]
         bind.to_rig[skin] = to_rig
         if is_first or shared:
-            votes.append(one.votes(to_rig))
-            bind.world = stored[skins[0]].stands(votes) if world is None else world
+            votes.append(_votes(one, to_rig))
+            bind.world = _stands(stored[skins[0]], votes) if world is None else world
     for skin, one in stored.items():
         bind.mended[skin] = {
             k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
-            for k in np.flatnonzero(one.bound.mended).tolist()
+            for k in np.flatnonzero(one.mended).tolist()
         }
     if mended - set(bind.stays):
         names = _names(nodes, bind)
