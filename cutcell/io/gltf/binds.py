@@ -47,9 +47,7 @@ class BoundSkin:
     order: list[int]  # the joints, parents first
     corners: NDArray[np.float64]  # (2, 3): of the box around the vertices
     nodes: list[int]  # of the joints
-    has_binds: bool = (
-        True  # inverse bind matrices; without them joints are at their nodes
-    )
+    has_binds: bool = True  # inverse bind matrices; without them joints are at their nodes
     mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
     """Of those, joints that stay where their matrix was, with their places."""

@@ -52,6 +52,12 @@ def sorted_influences(
     )
 
 
+def take_influences(attributes: dict[str, int]) -> dict[str, int]:
+    """Remove JOINTS_n and WEIGHTS_n from attributes and return what they were."""
+    names = [name for name in attributes if name.startswith(("JOINTS_", "WEIGHTS_"))]
+    return {name: attributes.pop(name) for name in names}
+
+
 def store_influences(
     buffer: BufferWriter,
     influences: tuple[NDArray, NDArray],

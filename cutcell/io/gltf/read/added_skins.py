@@ -18,6 +18,7 @@ from ....errors import MeshError
 from ....rig import Attachment, TriangleMesh
 from ....runtime.display import listed
 from ..container import Document
+from ..influences import take_influences
 from ..nodes import Nodes
 from .bones import Bones, find_bones, human_bones
 from .parts import draws_mesh, hidden_nodes, mesh_name, vanishes
@@ -77,9 +78,7 @@ def add_skins(
             node["mesh"] = len(document.items("meshes")) - 1
         used.add(node["mesh"])
         for primitive in primitives(document, node["mesh"], document.label("nodes", i)):
-            named = attributes(primitive, document.label("nodes", i))
-            for name in [k for k in named if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-                del named[name]  # of another skin
+            take_influences(attributes(primitive, document.label("nodes", i)))  # of another skin
         node["skin"] = skins[key]
 
 

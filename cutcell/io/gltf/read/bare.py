@@ -12,7 +12,7 @@ from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ..container import Document
 from ..nodes import Nodes
 from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
-from .primitives import StoredFaces, draws_triangles, primitives, read_triangles
+from .primitives import StoredFaces, read_triangles
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +60,9 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
             corners = corners[:, ::-1]  # what was outside stays outside
         first = [total + one.first_vertex for one in drawn]
         stored.append(StoredMesh(i, mesh, i in hidden, world, first))
-        numbers = _drawing(document, mesh, document.label("nodes", i))
-        for number, one, start in zip(numbers, drawn, first, strict=True):
+        for one, start in zip(drawn, first, strict=True):
             drawn_rows = slice(triangles + one.rows.start, triangles + one.rows.stop)
-            stored_faces.append(StoredFaces(mesh, number, start, drawn_rows, is_mirrored))
+            stored_faces.append(StoredFaces(mesh, one.number, start, drawn_rows, is_mirrored))
         triangles += len(corners)
         document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
         vertices.append(points @ world[:3, :3].T + world[:3, 3])
@@ -85,9 +84,3 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
         warnings=(*document.warnings, *filter(None, [why]), *left_out_warnings(left_out, ())),
         source=BareSource(document, whole, stored, tuple(stored_faces), why),
     )
-
-
-def _drawing(document: Document, mesh: int, user: str) -> list[int]:
-    """Return the numbers of a mesh's primitives that draw triangles."""
-    numbered = enumerate(primitives(document, mesh, user))
-    return [k for k, primitive in numbered if draws_triangles(primitive)]

@@ -10,7 +10,7 @@ from ....rig import Attachment, LeftOut
 from ....runtime.display import listed
 from ..container import Document
 from ..nodes import Nodes
-from .primitives import draws_triangles, primitives
+from .primitives import drawn_primitives
 
 OUTSIDE = "is outside of the scene"
 NO_JOINT = "has no skin and hangs on no joint"
@@ -46,8 +46,8 @@ def vanishes(nodes: Nodes, node: int) -> bool:
 
 def draws_mesh(document: Document, nodes: Nodes, node: int) -> bool:
     """Return whether a node's mesh has triangles, not only points or lines."""
-    drawn = primitives(document, nodes.raw[node]["mesh"], document.label("nodes", node))
-    return any(draws_triangles(p) for p in drawn)
+    user = document.label("nodes", node)
+    return any(drawn_primitives(document, nodes.raw[node]["mesh"], user))
 
 
 def left_out_meshes(

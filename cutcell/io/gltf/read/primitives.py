@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,6 +25,7 @@ DRAWS_TRIANGLES = (TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN)
 class Drawn(NamedTuple):
     """One of the triangle primitives of a mesh whose vertices and faces were put together."""
 
+    number: int  # among all of the mesh
     primitive: dict[str, Any]
     first_vertex: int
     rows: slice  # its faces
@@ -61,6 +63,15 @@ def attributes(primitive: dict[str, Any], user: str) -> dict[str, Any]:
 def draws_triangles(primitive: dict[str, Any]) -> bool:
     """Return whether a primitive is triangles, not points or lines."""
     return primitive.get("mode", TRIANGLES) in DRAWS_TRIANGLES
+
+
+def drawn_primitives(
+    document: Document, mesh: int, user: str
+) -> Iterator[tuple[int, str, dict[str, Any]]]:
+    """Yield the number and the label of each primitive that is triangles, and it."""
+    for k, primitive in enumerate(primitives(document, mesh, user)):
+        if draws_triangles(primitive):
+            yield k, f"{document.label('meshes', mesh)}, primitive {k}", primitive
 
 
 def read_positions(document: Document, primitive: dict[str, Any], user: str) -> NDArray:
@@ -130,9 +141,7 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
     drawn: list[Drawn] = []
     start: dict[Any, int] = {}
     total = triangles = 0
-    drawing = [p for p in primitives(document, mesh, user) if draws_triangles(p)]
-    for k, primitive in enumerate(drawing):
-        name = f"{document.label('meshes', mesh)}, primitive {k}"
+    for k, name, primitive in drawn_primitives(document, mesh, user):
         positions = read_positions(document, primitive, name)
         key = primitive["attributes"]["POSITION"]
         if key not in start:
@@ -141,7 +150,7 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
             vertices.append(positions)
         corners = read_faces(document, primitive, len(positions), name)
         rows = slice(triangles, triangles := triangles + len(corners))
-        drawn.append(Drawn(primitive, start[key], rows))
+        drawn.append(Drawn(k, primitive, start[key], rows))
         faces.append(corners + start[key])
     if not drawn:
         return np.zeros((0, 3)), np.zeros((0, 3), int), drawn

@@ -26,8 +26,7 @@ from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name
 from .primitives import (
     StoredFaces,
     attributes,
-    draws_triangles,
-    primitives,
+    drawn_primitives,
     read_faces,
     read_positions,
     read_weights,
@@ -203,10 +202,7 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
         if mesh in read_meshes:
             continue
         read_meshes.add(mesh)
-        for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
-            if not draws_triangles(primitive):
-                continue
-            label = f"{document.label('meshes', mesh)}, primitive {k}"
+        for k, label, primitive in drawn_primitives(document, mesh, document.label("nodes", i)):
             positions = read_positions(document, primitive, label)
             corners = read_faces(document, primitive, len(positions), label)
             key = (skin, _vertex_key(primitive, label))
@@ -222,10 +218,8 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:
                 corners = corners[:, ::-1]  # what was outside stays outside
-            start, rows = (
-                parts[key].rows.start,
-                slice(triangles, triangles := triangles + len(corners)),
-            )
+            start = parts[key].rows.start
+            rows = slice(triangles, triangles := triangles + len(corners))
             faces.append(corners + start)
             drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored))
         if total > first:

@@ -15,7 +15,7 @@ from ..binds import BoundSkin, agreed, invertible, mend, rest_world
 from ..container import Document, indices
 from ..nodes import Nodes
 from .accessors import read_accessor
-from .primitives import draws_triangles, joint_shares, primitives, read_positions
+from .primitives import drawn_primitives, joint_shares, read_positions
 
 
 def _votes(skin: BoundSkin, to_rig: NDArray) -> tuple[NDArray, NDArray]:
@@ -98,13 +98,11 @@ def _vertices(
     corners = np.array([np.full(3, np.inf), np.full(3, -np.inf)])
     for i in users:
         mesh, user = nodes.raw[i]["mesh"], document.label("nodes", i)
-        for k, primitive in enumerate(primitives(document, mesh, user)):
-            if draws_triangles(primitive):
-                label = f"{document.label('meshes', mesh)}, primitive {k}"
-                positions = read_positions(document, primitive, label)
-                corners[0] = np.minimum(corners[0], positions.min(axis=0))
-                corners[1] = np.maximum(corners[1], positions.max(axis=0))
-                shares += joint_shares(document, primitive, joints, label)
+        for _, label, primitive in drawn_primitives(document, mesh, user):
+            positions = read_positions(document, primitive, label)
+            corners[0] = np.minimum(corners[0], positions.min(axis=0))
+            corners[1] = np.maximum(corners[1], positions.max(axis=0))
+            shares += joint_shares(document, primitive, joints, label)
     return shares, corners if np.isfinite(corners).all() else np.zeros((2, 3))
 
 

@@ -18,7 +18,7 @@ from ....errors import WeightsError
 from ....rig import Rig
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
-from ..influences import pack_influences, store_deform, store_influences
+from ..influences import pack_influences, store_deform, store_influences, take_influences
 from ..read.bare import BareSource, StoredMesh
 from ..read.primitives import draws_triangles
 from .fresh import inverses, joint_nodes
@@ -88,8 +88,7 @@ class _Edit:
         primitives = meshes[number]["primitives"]
         for primitive, first in zip(primitives, one.first_vertices, strict=True):
             attributes = primitive["attributes"]
-            for name in [k for k in attributes if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-                del attributes[name]
+            take_influences(attributes)
             count = self.document["accessors"][attributes["POSITION"]]["count"]
             attributes.update(self._stored(first, count))
         new = {key: place.pop(key) for key in ("mesh", "weights") if key in place}

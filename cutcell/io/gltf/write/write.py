@@ -25,7 +25,7 @@ from ...materials.gltf_colored import with_surface_looks
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
 from ..container import ENDINGS, Document, beside, json_bytes, pack_glb
-from ..influences import pack_influences, store_deform, store_influences
+from ..influences import pack_influences, store_deform, store_influences, take_influences
 from ..read.read import GltfSource, StoredPart
 from .faces import store_faces, take_faces
 from .influence_rows import StoredRows, store_changed_rows, stored_rows
@@ -114,18 +114,11 @@ def _changed_parts(
         rows = stored_rows(rig, part, saved) if keeps else None
         if rows is None or not rows.is_same.all():
             partly = rows if rows is not None and rows.joints and rows.is_same.any() else None
-            changed.append(_ChangedPart(saved, _take_influences(document, saved), partly))
+            old = {}
+            for primitive in _primitives(document, saved):
+                old |= take_influences(primitive["attributes"])
+            changed.append(_ChangedPart(saved, old, partly))
     return changed
-
-
-def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:
-    """Remove JOINTS_n and WEIGHTS_n from a part's primitives and return what they were."""
-    removed: dict[str, int] = {}
-    for primitive in _primitives(document, part):
-        attributes = primitive["attributes"]
-        for name in [k for k in attributes if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-            removed[name] = attributes.pop(name)
-    return removed
 
 
 def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, Any]]:
