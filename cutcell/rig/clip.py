@@ -39,8 +39,32 @@ class Movable(Protocol):
         """Return it for joints that were moved; see `Clip.moved`."""
 
 
+class Derived:
+    """Times and joints of something made of a motion."""
+
+    motion: Motion
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return self.motion.duration
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return self.motion.joints
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0.
+
+        A file's clip has up to 30 a second and 3,600 in all.
+        """
+        return self.motion.times
+
+
 @dataclass(frozen=True, eq=False, init=False)
-class Clip:
+class Clip(Derived):
     """A motion of a rig's joints.
 
     It holds what its file holds, and is sampled when it is played: `sample` does so at any times,
@@ -79,24 +103,6 @@ class Clip:
             raise ParameterError("a clip needs times and transforms, or else a motion")
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "motion", motion or Frames(times, transforms))  # type: ignore[arg-type]
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return self.motion.duration
-
-    @property
-    def joints(self) -> int:
-        """How many joints it moves."""
-        return self.motion.joints
-
-    @property
-    def times(self) -> NDArray[np.float64]:
-        """Times of the frames that show it, shape (f,), seconds, ascending from 0.
-
-        A file's clip has up to 30 a second and 3,600 in all.
-        """
-        return self.motion.times
 
     @property
     def transforms(self) -> NDArray[np.float64]:
@@ -191,7 +197,7 @@ class Frames:
 
 
 @dataclass(frozen=True, eq=False)
-class Rebased:
+class Rebased(Derived):
     """Another motion, of joints that stand elsewhere at rest or hang on other parents.
 
     A joint of that motion keeps its motion relative to its parent; others do not move against
@@ -208,16 +214,6 @@ class Rebased:
     def joints(self) -> int:
         """How many joints it moves."""
         return len(self.origin)
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return self.motion.duration
-
-    @property
-    def times(self) -> NDArray[np.float64]:
-        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
-        return self.motion.times
 
     def moved(self, by: NDArray[np.float64]) -> Rebased:
         """Return it for joints that were moved again."""

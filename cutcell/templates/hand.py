@@ -65,12 +65,12 @@ def names() -> list[tuple[str, ...]]:
 
 def parents_of(joints: Joints) -> dict[str, str]:
     """Return the parent of each joint, "" for none."""
-    parents = {"hand": ""}
-    for name in joints:
-        finger, _, number = name.partition(".")
-        if number:
-            parents[name] = "hand" if number == "1" else f"{finger}.{int(number) - 1}"
-    return parents
+    before = {"": "", "1": "hand"}
+    split = {name: name.partition(".") for name in joints}
+    return {
+        name: before[number] if number in before else f"{finger}.{int(number) - 1}"
+        for name, (finger, _, number) in split.items()
+    }
 
 
 def _ends(body: Interior) -> tuple[int, list[int]]:

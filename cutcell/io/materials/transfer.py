@@ -70,7 +70,9 @@ def read_materials(rig: Rig) -> Materials | None:
     document.surfaces = stored.surfaces
     surfaces = document.surfaces
     collected = Collected(() if surfaces is None else surfaces.notes)
-    paint = (PrimitivePaint if surfaces is None else SurfacePaint)(surfaces or document, collected)
+    paint: Any = PrimitivePaint(document, collected)
+    if surfaces is not None:
+        paint = SurfacePaint(surfaces, collected)
     face_count = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
     document.allowance.take(face_count * BYTES_PER_FACE, "its materials")
     body = face_colors(rig.mesh.faces, _of_body(document, source), paint)

@@ -114,7 +114,7 @@ def _changed_parts(
         rows = stored_rows(rig, part, saved) if keeps else None
         if rows is None or not rows.is_same.all():
             partly = rows if rows is not None and rows.joints and rows.is_same.any() else None
-            old = {}
+            old: dict[str, int] = {}
             for primitive in _primitives(document, saved):
                 old |= take_influences(primitive["attributes"])
             changed.append(_ChangedPart(saved, old, partly))
