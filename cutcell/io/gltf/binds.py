@@ -207,11 +207,7 @@ def _contradicts(
 
 
 def rest_world(
-    matrices: NDArray,
-    shares: NDArray,
-    topmost: NDArray | None,
-    is_control: bool,
-    corners: NDArray,
+    matrices: NDArray, shares: NDArray, topmost: NDArray | None, is_control: bool, corners: NDArray
 ) -> NDArray[np.float64]:
     """Return the matrix to the scene on which most of the vertices' weight agrees.
 

@@ -77,9 +77,7 @@ def store_influences(
 
 
 def store_deform(
-    document: dict[str, Any],
-    skins: Iterable[tuple[int, Sequence[int]]],
-    deform: NDArray[np.bool_],
+    document: dict[str, Any], skins: Iterable[tuple[int, Sequence[int]]], deform: NDArray[np.bool_]
 ) -> None:
     """Store which joints deform. Shapes: deform (j,)."""
     for skin, joints in skins:

@@ -96,10 +96,7 @@ def _with_more(skin: SceneSkin, more: list[int], parents: list[int], world: NDAr
 
 
 def _mended(
-    scene: Mapping[str, NDArray],
-    skins: dict[int, SceneSkin],
-    parents: list[int],
-    world: NDArray,
+    scene: Mapping[str, NDArray], skins: dict[int, SceneSkin], parents: list[int], world: NDArray
 ) -> dict[int, SceneSkin]:
     """Return skins without matrices that contradict the nodes of joints that hold no vertex."""
     bound = {}
