@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import CutcellError, FileError, SkeletonError
+from ..errors import FileError, SkeletonError
 from ..rig import Rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes
-from .gltf.container import ENDINGS, MAGIC
+from .gltf.container import ENDINGS, MAGIC, malformed
 from .gltf.read.read import GltfSource, read_gltf
 from .gltf.write.fresh import check_fits, new_files
 from .gltf.write.skinned import can_be_skinned, skinned
@@ -220,12 +220,7 @@ def _check_gltf(kind: str, rig: Rig) -> None:
 
 
 def _gltf_files(rig: Rig, path: Path) -> dict[Path, bytes]:
-    try:
+    with malformed():  # parts of the document that loading had no reason to look at
         if isinstance(rig.source, GltfSource):
             return rewritten(rig, path)
         return skinned(rig, path) if can_be_skinned(rig) else new_files(rig, path)
-    except CutcellError:
-        raise
-    except (TypeError, ValueError, KeyError, IndexError, AttributeError) as e:
-        # Parts of the document that loading had no reason to look at.
-        raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e

@@ -13,11 +13,11 @@ from ..rig import Rig, Skeleton
 from .articulation import read_articulation
 from .deforming import with_deform
 from .files import naming
-from .gltf.container import Document
+from .gltf.container import Document, malformed
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.bones import find_bones
-from .gltf.read.read import malformed, plain_document
+from .gltf.read.compressed import plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .meshes.mesh_files import read_skeleton_json
 from .rignet import read_rignet_skeleton

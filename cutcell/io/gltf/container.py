@@ -12,12 +12,14 @@ import binascii
 import json
 import re
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import unquote
 
-from ...errors import FileError
+from ...errors import CutcellError, FileError
 from ..files import HALVES, Allowance, one_line, read_bytes, whole_characters
 
 MAGIC = b"glTF"
@@ -91,6 +93,18 @@ class Document:
         return f'{one} "{name}"' if isinstance(name, str) and name else f"{kind}[{index}]"
 
 
+@contextmanager
+def malformed() -> Iterator[None]:
+    """Turn what a malformed document raises into a `FileError`."""
+    try:
+        yield
+    except CutcellError:
+        raise
+    except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as e:
+        # Fields that no check above looked at, in a document that is not what it says.
+        raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
+
+
 def whole(owner: dict[str, Any], key: str, user: str, default: int | None = None) -> int:
     """Return a field that must be a whole number, 0 or more."""
     value = owner.get(key, default)
@@ -107,11 +121,6 @@ def indices(owner: dict[str, Any], key: str, user: str) -> list[int]:
     return value
 
 
-def is_gltf(data: bytes) -> bool:
-    """Return whether bytes look like a GLB container or like JSON text."""
-    return data[:4] == MAGIC or data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
-
-
 def read_document(path: Path) -> Document:
     """Read a GLB or glTF file with all its buffers."""
     data = read_bytes(path)
@@ -119,7 +128,7 @@ def read_document(path: Path) -> Document:
     others: list[tuple[int, bytes]] = []
     if data[:4] == MAGIC:
         text, binary, others = _split_chunks(data)
-    elif is_gltf(data):
+    elif data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
         text = data
     else:
         raise FileError(

@@ -12,7 +12,6 @@ from ...errors import CutcellError
 from ...rig import Rig
 from ..gltf.container import Document
 from ..gltf.read.accessors import read_accessor
-from ..gltf.read.bare import BareSource
 from ..gltf.read.primitives import (
     StoredFaces,
     primitives,
@@ -20,7 +19,7 @@ from ..gltf.read.primitives import (
     read_positions,
     read_triangles,
 )
-from ..gltf.read.read import GltfSource
+from ..gltf.read.read import BareSource, GltfSource
 from .corners import Corners, Piece, join_corners, surface_piece
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
@@ -94,14 +93,13 @@ def read_corners(rig: Rig) -> Corners:
         everything = slice(0, len(faces))
         pieces = [surface_piece(one, faces, everything) for one in source.meshes.values()]
     elif isinstance(source, BareSource):
-        world = {first: one.world for one in source.stored for first in one.first_vertices}
         for one in source.faces:
             if one.rows.stop > len(faces):  # the mesh is another one
                 return Corners()
             surface = _stored_surface(source.document, one)
             if surface is not None:
                 own = faces[one.rows] - one.first_vertex
-                pieces.append(surface_piece(surface, own, one.rows, world[one.first_vertex]))
+                pieces.append(surface_piece(surface, own, one.rows, source.placed[one.node]))
     return join_corners(rig.mesh.vertices, faces, [one for one in pieces if one is not None])
 
 

@@ -9,6 +9,7 @@ meshes of 18 kB none crashed it, but a few kept it busy for 20 seconds.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from ....errors import FileError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES, WIDTHS
-from ..container import Document, whole
+from ..container import Document, read_document, whole
 from .accessors import component
 from .primitives import attributes, primitives
 
@@ -31,6 +32,15 @@ DRACO = "KHR_draco_mesh_compression"
 SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 60.0
 MEMORY_A_BYTE, MIN_MEMORY = 500, 2**29
 """Limits of Draco's decoder: a byte holds up to some 20 vertices of a regular grid."""
+
+
+def plain_document(path: Path) -> Document:
+    """Read a document and decompress its accessors."""
+    document = read_document(path)
+    decompress_meshopt(document)
+    decompress_draco(document)
+    document.allow()  # what was compressed is larger now
+    return document
 
 
 def decompress_meshopt(document: Document) -> None:

@@ -35,6 +35,7 @@ class Drawn(NamedTuple):
 class StoredFaces:
     """Triangles that are stored together: those of one primitive."""
 
+    node: int  # that shows it
     mesh: int
     primitive: int
     first_vertex: int  # the primitive's first vertex in the rig

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,24 +10,24 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....errors import CutcellError, FileError, MeshError
+from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
-from ...weights import ReadWeights, sum_warnings
-from ..container import Document, read_document
+from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings
+from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
-from .bare import read_bare
 from .clips import read_clips
-from .compressed import decompress_draco, decompress_meshopt
-from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name
+from .compressed import plain_document
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
 from .primitives import (
     StoredFaces,
     attributes,
     drawn_primitives,
     read_faces,
     read_positions,
+    read_triangles,
     read_weights,
 )
 from .skins import Bind, read_bind, read_skeleton
@@ -64,6 +63,17 @@ class GltfSource:
     joint's number in it."""
 
 
+@dataclass(frozen=True, eq=False)
+class BareSource:
+    """The glTF file without a skin that a rig came from, for saving."""
+
+    document: Document
+    mesh: TriangleMesh  # as it was read
+    placed: dict[int, NDArray[np.float64]]  # world matrices (4, 4) of the nodes that show it
+    faces: tuple[StoredFaces, ...] = ()  # as they are now, if faces were repaired
+    why_bare: str = ""  # why there are no joints, where the file lets expect some
+
+
 def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
     with malformed():
@@ -71,27 +81,6 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
         if not bare or _skinned_nodes(Nodes(document)):
             return read_rig(document, path, accessories=accessories, has_bones=True)
         return read_bare(document, Nodes(document), path.stem)
-
-
-def plain_document(path: Path) -> Document:
-    """Read a document and decompress its accessors."""
-    document = read_document(path)
-    decompress_meshopt(document)
-    decompress_draco(document)
-    document.allow()  # what was compressed is larger now
-    return document
-
-
-@contextmanager
-def malformed() -> Iterator[None]:
-    """Turn what a malformed document raises into a `FileError`."""
-    try:
-        yield
-    except CutcellError:
-        raise
-    except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as e:
-        # Fields that no check above looked at, in a document that is not what it says.
-        raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
 
 
 def read_rig(
@@ -166,6 +155,36 @@ def read_rig(
     )
 
 
+def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig:
+    """Return the scene's meshes as a rig without joints, in the scene's space and units.
+
+    `why` says why it has no joints, if that may be a surprise.
+    """
+    shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node]
+    shown = [i for i in nodes.in_scene() if i in set(shown)] or shown
+    drawn = {
+        i: read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[1]
+        for i in shown
+    }
+    placed = {i: nodes.world[i] for i in shown if len(drawn[i])}
+    if not placed:
+        raise MeshError("its meshes have no triangles")
+    bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
+    stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
+    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    left_out = left_out_meshes(document, nodes, placed, ())
+    document.forget()
+    return Rig(
+        mesh,
+        Skeleton([], []),
+        name=name,
+        parts=tuple(stored.named),
+        left_out=left_out,
+        warnings=(*document.warnings, *filter(None, [why]), *left_out_warnings(left_out, ())),
+        source=BareSource(document, mesh, placed, tuple(stored.drawn), why),
+    )
+
+
 def _skinned_nodes(nodes: Nodes) -> list[int]:
     """Return the nodes with a skinned mesh, those of the default scene if it has any."""
     skinned = [i for i, n in enumerate(nodes.raw) if "skin" in n and "mesh" in n]
@@ -185,21 +204,23 @@ class _Stored(NamedTuple):
     named: list[Part]
 
 
-def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind) -> _Stored:
+def _read_parts(
+    document: Document, nodes: Nodes, shown: list[int], bind: Bind, is_bare: bool = False
+) -> _Stored:
     """Read every vertex buffer once, however many primitives draw from it.
 
-    A mesh that is in the scene twice, with two skins, is read for the first: both
-    draw with the same stored weights.
+    A skinned mesh that is in the scene twice, with two skins, is read for the first: both draw
+    with the same stored weights. Without skins, each node counts as one of no joints.
     """
     parts: dict[Any, StoredPart] = {}
     _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
     hidden = hidden_nodes(nodes)
     read_meshes: set[int] = set()
     total = triangles = 0
-    for i in skinned:
-        mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
+    for i in shown:
+        mesh, skin, first = nodes.raw[i]["mesh"], i if is_bare else nodes.raw[i]["skin"], total
         document.item("meshes", mesh, document.label("nodes", i))
-        if mesh in read_meshes:
+        if mesh in read_meshes and not is_bare:
             continue
         read_meshes.add(mesh)
         for k, label, primitive in drawn_primitives(document, mesh, document.label("nodes", i)):
@@ -208,8 +229,9 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
             key = (skin, _vertex_key(primitive, label))
             if key not in parts:
                 document.allowance.take(positions.nbytes, label)
-                joints = len(bind.skins[skin])
-                read = read_weights(document, primitive, len(positions), joints, label)
+                read, joints = NO_WEIGHTS, len(bind.skins[skin])
+                if joints:
+                    read = read_weights(document, primitive, len(positions), joints, label)
                 rows = slice(total, total := total + len(positions))
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(moved(positions, bind.to_rig[skin]))
@@ -221,10 +243,11 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
             start = parts[key].rows.start
             rows = slice(triangles, triangles := triangles + len(corners))
             faces.append(corners + start)
-            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored))
+            drawn.append(StoredFaces(i, mesh, k, start, rows, is_mirrored))
         if total > first:
             rows = slice(first, total)
-            named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
+            hides = i in hidden or (is_bare and vanishes(nodes, i))
+            named.append(Part(mesh_name(document, nodes, i), rows, hides))
     return stored._replace(parts=list(parts.values()))
 
 

@@ -13,9 +13,8 @@ from ....rig import Rig, TriangleMesh
 from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES
 from ..read.accessors import read_accessor
-from ..read.bare import BareSource
 from ..read.primitives import StoredFaces
-from ..read.read import GltfSource
+from ..read.read import BareSource, GltfSource
 
 
 def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:

@@ -15,9 +15,8 @@ from ..container import Document
 from ..influences import store_deform
 from ..nodes import Nodes
 from ..read.added_skins import add_skins
-from ..read.bare import BareSource, StoredMesh
 from ..read.primitives import draws_triangles
-from ..read.read import read_rig
+from ..read.read import BareSource, read_rig
 from ..read.skins import Bind
 from .fresh import inverses, joint_nodes
 from .write import rewritten
@@ -39,7 +38,7 @@ def can_be_skinned(rig: Rig) -> bool:
             (rig.mesh.faces, source.mesh.faces),
         )
     )
-    return same and all(_is_plain(source, one) for one in source.stored)
+    return same and all(_is_plain(source, node) for node in source.placed)
 
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
@@ -64,20 +63,20 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
     armature = first + len(skeleton.joints)
     _stand(document.json, armature)
     bind = Bind(nodes=list(range(first, armature)), inverse=list(inverses(skeleton)))
-    add_skins(document, Nodes(document), bind, {one.node: one.world for one in source.stored})
+    add_skins(document, Nodes(document), bind, source.placed)
     store_deform(document.json, bind.skins.items(), skeleton.deform)
     read = read_rig(document, stored.path)
     joints = replace(read.skeleton, deform=skeleton.deform)
     return rewritten(replace(read, skeleton=joints, weights=rig.weights), path)
 
 
-def _is_plain(source: BareSource, one: StoredMesh) -> bool:
-    """Return whether a mesh can be skinned: triangles only, and its node mirrors nothing."""
-    loaded = source.document.json
-    of_triangles = all(draws_triangles(p) for p in loaded["meshes"][one.mesh]["primitives"])
-    extensions = loaded["nodes"][one.node].get("extensions")
+def _is_plain(source: BareSource, node: int) -> bool:
+    """Return whether a node's mesh can be skinned: triangles only, and it mirrors nothing."""
+    owner, meshes = source.document.json["nodes"][node], source.document.json["meshes"]
+    of_triangles = all(draws_triangles(p) for p in meshes[owner["mesh"]]["primitives"])
+    extensions = owner.get("extensions")
     copied = isinstance(extensions, dict) and INSTANCES in extensions
-    return of_triangles and not copied and bool(np.linalg.det(one.world[:3, :3]) > 0)
+    return of_triangles and not copied and bool(np.linalg.det(source.placed[node][:3, :3]) > 0)
 
 
 def _stand(document: dict[str, Any], node: int) -> None:
