@@ -20,7 +20,7 @@ from .gltf.write.write import rewritten
 from .materials.gltf_colored import color_notes
 from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
-from .scenes.formats import SCENES, read_scene
+from .scenes.document import SCENES, read_scene
 from .skeletons import with_skeleton
 
 __all__ = ["load", "save"]

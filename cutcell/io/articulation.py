@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
-from .deforming import KEY, loaded_rig
 from .files import HALVES, Allowance, has_halves, one_line, read_bytes, whole_characters
-from .weights import NO_WEIGHTS, ReadWeights, summed
+from .weights import KEY, NO_WEIGHTS, ReadWeights, loaded_rig, summed
 
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 REQUIRED = ("vertices", "faces", "joints", "bones")

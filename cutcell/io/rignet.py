@@ -15,11 +15,10 @@ import numpy as np
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
-from .deforming import loaded_rig
 from .files import naming, read_text, whole_characters
 from .materials.obj_materials import ObjSource
 from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
-from .weights import NO_WEIGHTS, ReadWeights, summed
+from .weights import NO_WEIGHTS, ReadWeights, loaded_rig, summed
 
 MAX_DIGITS = 20
 """Of a vertex' number."""

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from ..errors import FileError, SkeletonError
 from ..rig import Rig, Skeleton
 from .articulation import read_articulation
-from .deforming import with_deform
 from .files import naming
 from .gltf.container import Document, malformed
 from .gltf.influences import read_deform
@@ -21,9 +20,9 @@ from .gltf.read.compressed import plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .meshes.mesh_files import read_skeleton_json
 from .rignet import read_rignet_skeleton
-from .scenes.document import scene_document
-from .scenes.formats import SCENES, scene_arrays
+from .scenes.document import SCENES, scene_arrays, scene_document
 from .scenes.joints import scene_world
+from .weights import with_deform
 
 KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
 MARGIN = 0.1

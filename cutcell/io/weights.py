@@ -1,14 +1,17 @@
-"""Normalisation of the weights that a file contains."""
+"""Weights of a file: scaled to a sum of one, with the joints that they make deform."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rig import Part
+from ..rig import Part, Rig, Skeleton, TriangleMesh
+from ..rig.deform_joints import deform_joints
+from ..rig.names import is_neutral
 from ..runtime.display import listed
 from ..runtime.memory import check_matrix
 
@@ -100,3 +103,107 @@ def normalised(weights: NDArray) -> NDArray[np.float64]:
         weights = weights / np.where(top > 0, top, 1)
     sums = weights.sum(axis=1, keepdims=True)
     return np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
+
+
+KEY = "cutcell_deform"
+"""Under which a saved file stores for each joint whether it deforms: a joint that got no weight
+still does."""
+STRAY = 1e-3
+"""Part of all weight: a control that carries less was given it by mistake."""
+
+
+def with_deform(
+    mesh: TriangleMesh,
+    skeleton: Skeleton,
+    weights: NDArray[np.float64] | None,
+    stored: NDArray[np.int8] | None = None,
+) -> tuple[Skeleton, NDArray[np.float64] | None, list[str]]:
+    """Return the skeleton with the joints that may carry weight, the weights, and warnings.
+
+    The weights are without those of Blender's stand-in for vertices without weights.
+
+    Shapes: weights (n, j), stored (j,): 1, 0 or -1 where the file does not say.
+    """
+    if not len(skeleton.joints):
+        return skeleton, weights, []
+    neutral, warnings = neutral_joints(skeleton), []
+    if weights is not None and weights[:, neutral].any():
+        count = int((weights[:, neutral] > 0).any(axis=1).sum())
+        warnings.append(
+            f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
+            f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding "
+            "gives them new weights"
+        )
+        weights = normalised(np.where(neutral, 0.0, weights))
+    if stored is not None and neutral.any():
+        stored = np.where(neutral, 0, stored)
+    if stored is None or not (stored == 1).any():
+        deform, more = _inferred(mesh, skeleton, weights)
+        return replace(skeleton, deform=deform), weights, warnings + more
+    deform = stored == 1
+    if (stored < 0).any():  # such as a skin that another program added
+        inferred, more = _inferred(mesh, skeleton, weights)
+        deform, warnings = np.where(stored < 0, inferred, deform), warnings + more
+    weighted = np.zeros(len(deform), bool)
+    if weights is not None:
+        weighted = (stored == 0) & (weights > 0).any(axis=0)
+    if weighted.any():
+        warnings.append(
+            f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
+            "not deforming: new weights give them none"
+        )
+    return replace(skeleton, deform=deform), weights, warnings
+
+
+def loaded_rig(
+    mesh: TriangleMesh,
+    skeleton: Skeleton,
+    read: ReadWeights,
+    name: str,
+    stored: NDArray[np.int8] | None = None,
+    warnings: Iterable[str] = (),
+    source: Any = None,
+) -> Rig:
+    """Return a rig of one part, with the joints that deform; see `with_deform`."""
+    skeleton, weights, more = with_deform(mesh, skeleton, read.weights, stored)
+    more += sum_warnings(read.sums, mesh.faces, [Part(name, slice(None))])
+    told = (*read.warnings, *warnings, *more)
+    return Rig(
+        mesh, skeleton, weights, name=name, warnings=told, weight_sums=read.sums, source=source
+    )
+
+
+def neutral_joints(skeleton: Skeleton) -> NDArray[np.bool_]:
+    """Return which joints are Blender's stand-in for vertices without weights, shape (j,)."""
+    neutral = np.array([is_neutral(name) for name in skeleton.names], bool)
+    return neutral & (not neutral.all())
+
+
+def _inferred(
+    mesh: TriangleMesh, skeleton: Skeleton, weights: NDArray[np.float64] | None
+) -> tuple[NDArray[np.bool_], list[str]]:
+    """Return which joints (j,) deform by the weights, else by names and places, and warnings."""
+    total = 0.0 if weights is None else float(weights.sum())
+    if weights is None or total == 0:
+        deform = deform_joints(mesh, skeleton).deform
+        if deform.all():
+            return deform, []
+        return deform, [
+            f"{(~deform).sum()} of {len(deform)} joints are taken for controls, end markers or "
+            f"roots and get no weight: {_names(skeleton, ~deform)}"
+        ]
+    share = weights.sum(axis=0) / total
+    carries = share > 0
+    stray = carries & (share < STRAY)
+    if stray.any():
+        stray &= ~deform_joints(mesh, skeleton).deform
+    if not stray.any():
+        return carries, []
+    return carries & ~stray, [
+        f"the file's weights give under {STRAY:.1%} to {_names(skeleton, stray)}: taken for "
+        "controls, which get no weight"
+    ]
+
+
+def _names(skeleton: Skeleton, which: NDArray[np.bool_]) -> str:
+    return listed([skeleton.names[j] for j in np.flatnonzero(which)])

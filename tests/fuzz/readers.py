@@ -23,7 +23,7 @@ import numpy as np
 
 import cutcell
 from cutcell.io.gltf.read import compressed as gltf_draco
-from cutcell.io.scenes import formats as scenes
+from cutcell.io.scenes import document as scenes
 from cutcell.isolated.__main__ import limit_memory
 from cutcell.isolated.run import WorkFailedError
 

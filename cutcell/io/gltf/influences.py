@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..deforming import KEY
-from ..weights import normalised
+from ..weights import KEY, normalised
 from .buffer import BufferWriter
 from .container import Document
 

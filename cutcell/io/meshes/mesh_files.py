@@ -13,10 +13,10 @@ import numpy as np
 
 from ...errors import FileError, MeshError, SkeletonError
 from ...rig import Rig, Skeleton, TriangleMesh
-from ..deforming import with_deform
 from ..files import has_halves, naming, one_line, read_bytes, read_text
 from ..materials.obj_materials import ObjSource
 from ..materials.surfaces import Surface, Surfaces
+from ..weights import with_deform
 from .obj import parse_obj
 
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it writes tracebacks to terminals

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from cutcell.errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
 from cutcell.geometry.triangles import face_edges
 from cutcell.io.articulation import HEADERS, articulation_bytes
-from cutcell.io.deforming import with_deform
-from cutcell.io.weights import normalised
+from cutcell.io.weights import normalised, with_deform
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell.rig.checks import one_line
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
-from ...deforming import with_deform
-from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings
+from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes

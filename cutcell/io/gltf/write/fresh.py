@@ -12,9 +12,9 @@ from .... import __version__
 from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
-from ...deforming import KEY
 from ...materials.corners import vertex_normals
 from ...materials.gltf_colored import with_rig_looks
+from ...weights import KEY
 from ..builder import GltfBuilder
 from ..container import Document, with_whole_names
 from ..influences import pack_influences, store_influences

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....rig import Rig
-from ...deforming import neutral_joints
-from ...weights import normalised
+from ...weights import neutral_joints, normalised
 from ..buffer import BufferWriter
 from ..influences import pack_influences, sorted_influences
 from ..read.accessors import find_accessor
