@@ -13,15 +13,17 @@ from ..rig import Skeleton
 from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
 from ..runtime.progress import Progress, silent
-from . import biped, chain, hand, quadruped
+from . import biped, hand, quadruped
 from .frame import Joints, lying, standing
-from .interior import Interior
+from .interior import Interior, along
 
 Template = Literal["biped", "quadruped", "hand", "snake", "chain"]
 TEMPLATES: tuple[Template, ...] = get_args(Template)
 RESOLUTION = 64
 """With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
+ENDS = 0.12
+"""Of the length of a chain: an end is as thick as its deepest point so far in."""
 STANDING: dict[str, Any] = {"biped": biped, "quadruped": quadruped}
 CHAINS = {
     "snake": tuple(f"spine.{n}" for n in range(1, 13)),
@@ -110,7 +112,24 @@ def _placed(body: Interior, template: Template) -> tuple[Joints, dict[str, str]]
         joints = hand.place(body)
         return joints, hand.parents_of(joints)
     names = CHAINS[template]
-    return chain.place(body, names), dict(zip(names, ("", *names), strict=False))
+    return _chain(body, names), dict(zip(names, ("", *names), strict=False))
+
+
+def _chain(body: Interior, names: tuple[str, ...]) -> Joints:
+    """Return where joints are along the middle of a body, from its thick end to its thin one."""
+    start = int(body.distances(0).argmax())
+    end = int(body.distances(start).argmax())
+    path = body.middle_path(start, end)
+    inset = 0.5 / len(names) if len(names) > 1 else 0.5
+    shares = np.linspace(0.3 * inset, 1 - inset, len(names))
+    if _thickness(body, end) > _thickness(body, start):
+        path = path[::-1]
+    return dict(zip(names, along(path, shares), strict=True))
+
+
+def _thickness(body: Interior, end: int) -> float:
+    far = body.distances(end)
+    return float(body.depth[far < ENDS * far.max()].max())
 
 
 def names_of(template: Template) -> list[tuple[str, ...]]:
