@@ -64,12 +64,14 @@ class Scene:
 
     def arrays(self):
         """Return what the process hands on."""
-        columns = zip(*self._nodes, strict=True)
-        arrays = dict(
-            zip(("names", "parents", "transforms", "hidden", "bones"), columns, strict=True)
-        )
+        names, parents, transforms, hidden, bones = zip(*self._nodes, strict=True)
         rows = self._materials
-        arrays = {f"node_{key}": np.array(values) for key, values in arrays.items()} | {
+        arrays = {
+            "node_names": np.array(names, np.str_),
+            "node_parents": np.array(parents),
+            "node_transforms": np.array(transforms, float),
+            "node_hidden": np.array(hidden),
+            "node_bones": np.array(bones),
             "mesh_names": np.array([name for name, _ in self._meshes], np.str_),
             "mesh_nodes": np.array([node for _, node in self._meshes], int),
             "clip_names": np.array(self._clips, np.str_),
@@ -80,9 +82,9 @@ class Scene:
             "material_uses": np.array([row[3:5] for row in rows], int).reshape(-1, 2),
             "image_files": np.array([names for names, _ in self._images], np.str_).reshape(-1, 3),
         }
-        for k, content in self._images.values():
-            arrays[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
-        return arrays | self._mesh_arrays
+        images = {f"image_{k}_content": one for k, one in self._images.values()}
+        contents = {name: np.frombuffer(one, np.uint8) for name, one in images.items()}
+        return arrays | contents | self._mesh_arrays
 
 
 def upper_left(uv):
