@@ -148,7 +148,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
 
 
 def check_output(path: Path, rig: Rig | None = None) -> None:
-    """Meet what would stop `save` before the work whose result is to be saved."""
+    """Fail early if `save` would fail."""
     kind = path.suffix.lower()
     with naming(path):
         if kind == ".fbx":

@@ -21,7 +21,7 @@ from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_ob
 from .weights import NO_WEIGHTS, ReadWeights, loaded_rig, summed
 
 MAX_DIGITS = 20
-"""Of a vertex' number."""
+"""Most digits of a vertex's number."""
 
 
 @dataclass

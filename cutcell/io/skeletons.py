@@ -26,7 +26,7 @@ from .weights import with_deform
 
 KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
 MARGIN = 0.1
-"""Of the diagonal of a mesh's bounding box: joints may lie this far outside of the box."""
+"""How far joints may lie outside of the bounding box, in diagonals of it."""
 SIMILAR = 0.5
 """The scene's places are chosen unless those in the bind space fit better than by this factor."""
 MIN_FIT = 0.2

@@ -20,7 +20,7 @@ LARGE = 1e300
 ROUNDING = 0.01
 """Sums of weights that are stored in 8 bits differ from one by up to this."""
 COPIES = 2
-"""Of the matrix at a time, before and after its rows are scaled."""
+"""Copies of the matrix at a time, before and after its rows are scaled."""
 
 
 class ReadWeights(NamedTuple):

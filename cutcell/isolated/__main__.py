@@ -33,7 +33,7 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
 
 
 def limit_memory(allowance: int) -> None:
-    """Let this process take so many more bytes, 0 for any; only Linux sees to it.
+    """Limit the further memory of this process, 0 for no limit; only on Linux.
 
     A lower limit that this process began with stays.
     """

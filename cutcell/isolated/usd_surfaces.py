@@ -1,4 +1,4 @@
-"""What faces of the meshes of a USD have: normals, texture coordinates, materials, displayColor.
+"""Normals, texture coordinates, materials and displayColor of the faces of USD meshes.
 
 Of materials, UsdPreviewSurface's diffuse colour and its image are read.
 """

@@ -15,7 +15,7 @@ from ..errors import CutcellError, ParameterError
 LONG = 60
 """Characters of a wrong value that are shown, at most."""
 LARGEST = 1e60
-"""Of coordinates that are computed with: products of a few of them must not overflow."""
+"""Largest coordinate to compute with: products of a few of them must not overflow."""
 
 
 def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> int:

@@ -13,7 +13,7 @@ from .transforms import composed, relative
 
 
 class Motion(Protocol):
-    """What a clip is sampled from: the channels of a file, frames, or anything else."""
+    """Source of a clip: the channels of a file, frames, or anything else."""
 
     @property
     def joints(self) -> int:

@@ -16,7 +16,7 @@ from .skeleton import Skeleton
 
 @runtime_checkable
 class TrimeshLike(Protocol):
-    """What is read of a `trimesh.Trimesh`."""
+    """Attributes read from a `trimesh.Trimesh`."""
 
     vertices: Any  # (n, 3)
     faces: Any  # (m, 3)
@@ -24,7 +24,7 @@ class TrimeshLike(Protocol):
 
 @runtime_checkable
 class PolyDataLike(Protocol):
-    """What is read of a `pyvista.PolyData`."""
+    """Attributes read from a `pyvista.PolyData`."""
 
     points: Any  # (n, 3)
     faces: Any  # for each face how many corners it has, then these; all in one row

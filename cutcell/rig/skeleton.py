@@ -139,7 +139,7 @@ class Skeleton(Summarized):
 
     @cached_property
     def subtree(self) -> NDArray[np.bool_]:
-        """Whether joint k moves along when joint j turns: shape (j, k); true for k = j."""
+        """True where joint k moves along when joint j turns, shape (j, k); true for k = j."""
         inside = np.eye(len(self.parents), dtype=bool)
         above = self.parents.copy()
         while (above >= 0).any():

@@ -17,23 +17,23 @@ PARENTS = {
 }  # fmt: skip
 
 SOLE = 0.06
-"""Of the height: what is lower belongs to the feet."""
+"""Height below which points belong to the feet, in body heights."""
 LEGS = (0.36, 0.6)
-"""Of the neck's height: where hips are sought; a robe hides them."""
+"""Range in which hips are sought, in heights of the neck; a robe hides them."""
 ROBE_HIPS = 0.5
 ELBOW, WRIST = 0.56, 0.24
-"""Of the way from the fingers to the shoulder, after adults' proportions."""
+"""Shares of the path from the fingers to the shoulder, after adults' proportions."""
 NECK = 0.05
-"""Of the height: how far above the shoulders it may begin."""
+"""Height above the shoulders at which the neck may begin, in body heights."""
 KNEE = 0.54
-"""Of the way from the ground to the hips."""
+"""Share of the height of the hips."""
 ANKLE = 0.08
 THIN = 0.75
-"""Of a lattice cell."""
+"""Depth of thin parts, in lattice cells."""
 HAND = 0.1
-"""Of the height: how far beyond what is thick fingers may reach."""
+"""Reach of fingers beyond thick parts, in body heights."""
 ARM_OUT = 0.6
-"""Of the farthest point to a side: what is nearer to the middle is no hand."""
+"""Share of the farthest point to a side within which there is no hand."""
 
 
 def place(body: Interior) -> Joints:

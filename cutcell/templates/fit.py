@@ -23,7 +23,7 @@ RESOLUTION = 64
 """With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
 ENDS = 0.12
-"""Of the length of a chain: an end is as thick as its deepest point so far in."""
+"""Share of the length at each end in which its thickness is measured."""
 STANDING: dict[str, Any] = {"biped": biped, "quadruped": quadruped}
 CHAINS = {
     "snake": tuple(f"spine.{n}" for n in range(1, 13)),

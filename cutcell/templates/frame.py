@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 ALIKE = 0.06
-"""Of the body's longest side: left and right joints that differ by less are made symmetric."""
+"""Difference below which left and right joints become symmetric, in longest sides of the body."""
 Joints = dict[str, NDArray[np.float64]]
 """Position of each joint by its name, in the body's frame."""
 TRUNK = ("hips", "spine", "chest", "neck", "head")
@@ -83,7 +83,7 @@ def _feet(nodes: NDArray[np.float64], axis: int) -> float:
 
 
 def _looks_back(points: NDArray[np.float64], tall: bool) -> bool:
-    """Whether a body in its frame (n, 3) turns its back to where the frame has its front."""
+    """Return whether a body in its frame (n, 3) has its back where the frame has its front."""
     height = points[:, 1] - points[:, 1].min()
     total = float(np.ptp(points, axis=0).max())
     if tall:  # toes are before the ankles

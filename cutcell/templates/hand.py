@@ -16,16 +16,16 @@ NAMES = {
 }
 """Names of the fingers other than the thumb, by their number."""
 MIN_LENGTH = 0.3
-"""Of the longest one: what is shorter is no finger."""
+"""Least length of a finger, in lengths of the longest one."""
 MAX_ENDS = 16
 CLIMB = 5
-"""Lattice cells: how far is looked for what is still farther from the palm."""
+"""Search radius for the next point along a finger, in lattice cells."""
 BACK = -0.3
 """Cosine of the angle between a finger and all of them: what is less points to the wrist."""
 MIN_OF_HAND = 0.25
-"""Of the way from the wrist to the farthest tip: as long is the longest finger at least."""
+"""Least length of the longest finger, as a share of the path from the wrist to its tip."""
 KNUCKLES = np.array([1.0, 0.58, 0.28])
-"""Of the way from the tip of a finger to the palm."""
+"""Shares of the path from the tip of a finger to the palm."""
 
 
 def place(body: Interior) -> Joints:

@@ -13,13 +13,13 @@ from scipy.spatial import cKDTree
 from ..graph.cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 
 MIN_DEPTH = 0.5
-"""Of a lattice cell: depth of surface nodes, so that paths have a cost."""
+"""Depth of surface nodes, in lattice cells, so that paths have a cost."""
 AT_SKIN = 0.1
-"""Of a lattice cell: points nearer to the skin are treated as outside."""
+"""Distance from the skin within which points are treated as outside, in lattice cells."""
 LARGE_COMPONENTS = 32
 """Components that others may be joined to; further ones are small."""
 SHORTEST = 1e-9
-"""Of edges in the unit cube: one of length 0 would be none."""
+"""Least length of edges in the unit cube: one of length 0 would be none."""
 
 
 class Interior:

@@ -19,9 +19,9 @@ PARENTS = {
 }  # fmt: skip
 
 SOLE = 0.08
-"""Of the height: what is lower belongs to the feet."""
+"""Height below which points belong to the feet, in body heights."""
 LEG = np.array([0.08, 0.5, 1.05])
-"""Of the way from the ground to the trunk: foot, knee, and where the leg begins."""
+"""Shares of the path from the ground to the trunk: foot, knee, top of the leg."""
 
 
 def place(body: Interior) -> Joints:

@@ -24,7 +24,7 @@ hold vertices."""
 STRETCH, TURN = 0.1, 0.02
 """How much a frame may be stretched by a pose, and turned where there is none."""
 SOFT = 0.05
-"""Of positions of a character, the distance at which one counts little for the other."""
+"""Distance of two positions of a character at which one counts little for the other."""
 LEAN = 0.15
 """How far a posed character may stand from its topmost joint, which is seldom posed."""
 CONFIRMED = 0.05
@@ -50,7 +50,7 @@ class BoundSkin:
     has_binds: bool = True  # inverse bind matrices; without them joints are at their nodes
     mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
-    """Of those, joints that stay where their matrix was, with their places."""
+    """Positions of those of them that stay where their matrix was."""
     is_trusted: NDArray[np.bool_] = field(init=False)
     """Which joints say where the character stands: those that hold vertices, unless hidden."""
     stands: NDArray[np.float64] | None = field(init=False, default=None)

@@ -50,7 +50,7 @@ class Document:
     allowance: Allowance = field(init=False)  # memory that may be taken to read it
     warnings: list[str] = field(default_factory=list)  # warnings of reading it, in sentences
     surfaces: Any = None
-    """Of a document that was made of another format: the `Surfaces` that colour its meshes."""
+    """The `Surfaces` that colour the meshes of a document made from another format."""
 
     def __post_init__(self) -> None:
         self.allow()
@@ -60,7 +60,7 @@ class Document:
         self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
 
     def forget(self) -> None:
-        """Let go of what was only needed to read it."""
+        """Clear read caches."""
         for cache in (self.accessors, self.decoded, self.finite, self.triangles):
             cache.clear()
 

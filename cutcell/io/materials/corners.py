@@ -12,7 +12,7 @@ from ...geometry.triangles import normals as face_normals
 from .surfaces import Surface, stored_corners
 
 DECIMALS = 6
-"""Of components of normals, so that rounding errors of a file split no vertices."""
+"""Decimals of normals, so that rounding errors of a file split no vertices."""
 
 
 class Corners(NamedTuple):

@@ -20,12 +20,12 @@ BLENDED = 9
 """Added to how an image goes on, where what is behind shines through by alpha."""
 OPAQUE = 255
 CUTOFF = 0.5
-"""Where alpha cuts a surface, if the material does not tell."""
+"""Default threshold of alpha at which a surface is cut."""
 
 
 @dataclass(frozen=True)
 class StoredImage:
-    """An image as a file stores it: what people call it, and its bytes."""
+    """An image as a file stores it: its label and its bytes."""
 
     name: str
     content: bytes
@@ -41,7 +41,7 @@ class Layer:
     """Nothing is there where its alpha is less; None where alpha cuts nothing."""
     blended: bool = False  # whether what is behind shines through by its alpha
     color: tuple[int, ...] | None = None
-    """What is shown where the image cannot be, red, green and blue; the tints when left out."""
+    """Red, green and blue shown in place of an unreadable image; the tints when left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ class Collected:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What could not be read, in sentences."""
+        """Parts that could not be read, in sentences."""
         return tuple(self._notes)
 
     @property
@@ -120,7 +120,7 @@ class Collected:
         return self._layers.setdefault(use, len(self._layers))
 
     def note(self, label: str, error: Exception) -> None:
-        """Keep in mind what could not be read of a material."""
+        """Record that a material could not be read completely."""
         why = str(error) if isinstance(error, CutcellError) else "it is malformed"
         self._notes[f"{label} is used without what could not be read of it: {why}"] = None
 

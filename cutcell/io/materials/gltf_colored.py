@@ -23,7 +23,7 @@ from .transfer import has_materials, read_corners, read_materials
 
 
 class _Look(NamedTuple):
-    """What a file gives the faces of a mesh."""
+    """Colours and corners of the faces of a mesh."""
 
     colors: FaceColors | None
     corners: Corners

@@ -26,7 +26,7 @@ EMBEDDABLE = ("image/png", "image/jpeg")
 """Formats that every reader of glTF supports."""
 CONVERTIBLE = ("WEBP", "BMP", "TGA")
 MAX_PIXELS = 2**26
-"""Of an image to convert: 8192 by 8192."""
+"""Largest image to convert: 8192 by 8192."""
 
 
 class Embedded(NamedTuple):

@@ -26,7 +26,7 @@ OPTIONS = {
     **dict.fromkeys(("-blendu", "-blendv", "-boost", "-bm", "-cc", "-clamp"), 1),
     **dict.fromkeys(("-colorspace", "-imfchan", "-texres", "-type"), 1),
 }
-"""Of images, with how many words follow at most; numbers may be fewer."""
+"""Options of images, with the largest number of words that follow."""
 NUMBERS = ("-o", "-s", "-t", "-mm")
 
 

@@ -31,7 +31,7 @@ class Surface:
 
     @property
     def is_painted(self) -> bool:
-        """Whether faces have materials, or corners colours."""
+        """True if faces have materials, or corners colours."""
         return self.colors is not None or bool((self.material >= 0).any())
 
 
@@ -45,7 +45,7 @@ class Material:
     opacity: float = 1.0  # from 0 to 1
     blended: bool = False  # whether the image's alpha counts
     replaced: bool = False
-    """Whether the image takes the place of the colour, and is not multiplied by it."""
+    """The image replaces the colour, instead of being multiplied by it."""
 
     @property
     def tint(self) -> tuple[int, ...]:
@@ -58,7 +58,7 @@ class ImageFile:
     """An image that a file brings, or only names."""
 
     names: tuple[str, ...]
-    """Of a file beside, as far as the file tells; the first that is there is taken."""
+    """Possible names of a separate file; the first that exists is used."""
     content: bytes = b""  # empty for a separate file
 
 
@@ -75,7 +75,7 @@ class Surfaces:
 
     @cached_property
     def coloured(self) -> bool:
-        """Whether there is more to see than one grey."""
+        """True if there is more to see than one grey."""
         painted = [one for one in self.meshes.values() if one.is_painted]
         used = {int(k) for one in painted for k in np.unique(one.material)}
         materials = [self.materials[k] for k in used if k >= 0]

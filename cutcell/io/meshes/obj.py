@@ -16,7 +16,7 @@ from ...rig import TriangleMesh
 MOST = 2**31 - 2
 """Number of a vertex, counted from 0."""
 KINDS = ("v", "vt", "vn")
-"""What a corner of a face refers to, in this order."""
+"""References of a corner of a face, in this order."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,7 +36,7 @@ from .joints import SceneSkin, scene_skins, scene_world
 
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
-"""Of one vertex, the strongest; sixteen sets of glTF hold them."""
+"""Most influences of a vertex; sixteen sets of glTF hold them."""
 
 
 def scene_document(

@@ -1,4 +1,4 @@
-"""Where points are relative to a body, from its triangles alone: no graph, nothing compiled."""
+"""Distances to a body and tests for its inside from triangles alone, without a graph or kernels."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from ...geometry.triangles import normals
 from ..mesh import TriangleMesh
 
 SPACING = 0.02
-"""Of the longest side: samples of the surface are about as far apart."""
+"""Distance of samples of the surface, in longest sides."""
 CELL = SPACING / 2
-"""Of the longest side: samples that lie in one cell of this size become one."""
+"""Size of cells whose samples become one, in longest sides."""
 MAX_SPLITS = 50
 """Along each side of a triangle, whatever its size."""
 INSIDE = 0.3
-"""Of the winding number, of either sign: open meshes are never whole, and some are inside out."""
+"""Threshold of the winding number, of either sign: open meshes are never whole, some inside out."""
 BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
 

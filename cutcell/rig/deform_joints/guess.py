@@ -31,22 +31,22 @@ from ..skeleton import Skeleton
 from .body import SPACING, Body
 
 OUTSIDE = 0.04
-"""Of the longest side: a joint that is farther from the body moves none of it."""
+"""Distance from the body beyond which a joint moves none of it, in longest sides."""
 FEW_BONES = 0.15
-"""Of the longest side: as far from the body a root may lie whose children are all that there is."""
+"""Distance from the body at which a root may lie whose children are all other joints."""
 SAME_PLACE = 0.01
-"""Of the longest side: a control this near to another joint stands for it."""
+"""Distance within which a control stands for another joint, in longest sides."""
 THROUGH_BODY = 0.5
 """Part of a link between two joints that must run in or near the body for it to be a bone."""
 ALONG = np.linspace(0.1, 0.9, 9)
-"""Where a link is looked at."""
+"""Samples along a link."""
 NOTHING_BEYOND = 0.15
 """Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
 
 MAX_JOINTS = 2_000
-"""Of a body; where there are more, only names count, for places would take minutes."""
+"""Joints beyond which only names count, since places would take minutes."""
 
 BONE = "in or near the body"
 

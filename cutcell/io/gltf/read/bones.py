@@ -23,9 +23,9 @@ EXTENSIONS_NOT_EMPTY = ("KHR_lights_punctual", "EXT_mesh_gpu_instancing")
 MIN_CHAIN = 3
 """Nodes of a chain of bones. Two nodes are one if their tree has no others."""
 MARGIN = 0.1
-"""Of the diagonal of the meshes' bounding box: bones may lie this far outside of the box."""
+"""How far bones may lie outside of the meshes' bounding box, in diagonals of it."""
 SAME_PLACE = 1e-6
-"""Of the same diagonal."""
+"""Tolerance in the same diagonals."""
 
 
 @dataclass

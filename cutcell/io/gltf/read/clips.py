@@ -23,7 +23,7 @@ MAX_FRAMES = 3600
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
 MAX_MATRICES, LEVEL = 2**22, 100
-"""Of nodes in all frames, and what a level of the hierarchy costs beside its own, in matrices: a
+"""Matrices in all frames, and the cost of a level of the hierarchy besides its own: a
 chain of thousands of nodes is shown by fewer frames, too."""
 
 WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}

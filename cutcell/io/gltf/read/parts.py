@@ -17,7 +17,7 @@ NO_JOINT = "has no skin and hangs on no joint"
 
 
 def mesh_name(document: Document, nodes: Nodes, node: int) -> str:
-    """Return what people call the mesh of a node: the node's name, the mesh's, a number."""
+    """Return the name of a node's mesh: the node's, the mesh's, or its number."""
     for owner in (nodes.raw[node], document.items("meshes")[nodes.raw[node]["mesh"]]):
         if isinstance(owner.get("name"), str) and owner["name"]:
             return owner["name"]

@@ -16,9 +16,9 @@ from ..container import Document
 from .accessors import read_accessor
 
 BYTES_PER_CORNER = 24
-"""Of a triangle; in a strip or a fan each corner makes one."""
+"""Bytes of a triangle; in a strip or a fan each corner makes one."""
 BYTES_PER_SET = 4 * (8 + 8)
-"""Of a vertex' joints and weights, as a list of influences."""
+"""Bytes of a vertex's joints and weights, as a list of influences."""
 DRAWS_TRIANGLES = (TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN)
 
 

@@ -155,7 +155,7 @@ class Bind:
     stays: dict[int, NDArray] = field(default_factory=dict)
     """Places of joints that stay where a matrix was that was replaced."""
     mended: dict[int, dict[int, NDArray]] = field(default_factory=dict)
-    """Of each skin, by the joint's number in it: matrices that replace those of the file."""
+    """Matrices that replace those of the file, by skin and the joint's number in it."""
 
 
 def read_bind(

@@ -58,7 +58,7 @@ class _Edit:
         """The inverse bind matrix of each of the rig's joints."""
 
     def freeze_removed_joints(self) -> None:
-        """Let nothing move the nodes of removed joints against their parents."""
+        """Freeze removed joints relative to their parents."""
         removed = [f for f in range(len(self.source.nodes)) if f not in self.number]
         for f in removed:
             node = self.source.nodes[f]
@@ -115,7 +115,7 @@ class _Edit:
                 self._add(holder, self.node[new_parent])
 
     def skins(self, moves: list[NewValues]) -> tuple[list[StoredPart], list[NewValues]]:
-        """Let the skins name the rig's joints, and say where they are bound."""
+        """Set the joints of the skins and their inverse bind matrices."""
         source, replaced = self.source, list(moves)
         columns: dict[int, list[int]] = {}
         for part in source.parts:
