@@ -21,7 +21,6 @@ from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .meshes.mesh_files import read_skeleton_json
 from .rignet import read_rignet_skeleton
 from .scenes.document import SCENES, scene_arrays, scene_document
-from .scenes.joints import scene_world
 from .weights import with_deform
 
 KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
@@ -101,9 +100,8 @@ def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] |
             return _of_document(plain_document(path))
     if kind in SCENES:
         scene = scene_arrays(path)
-        document = scene_document(scene, path, "cutcell", needs_mesh=False)
-        bones = np.flatnonzero(scene["node_bones"]).tolist()
-        return _of_document(document, bones, scene_world(scene))
+        document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
+        return _of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
     raise FileError(f'no skeleton can be read from "{kind}"; give {KINDS}')
 
 

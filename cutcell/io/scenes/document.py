@@ -41,8 +41,8 @@ MAX_INFLUENCES = 64
 
 def scene_document(
     scene: Mapping[str, NDArray], path: Path, generator: str, needs_mesh: bool = True
-) -> Document:
-    """Return a scene as a document."""
+) -> tuple[Document, NDArray | None]:
+    """Return a scene as a document, and the matrix (4, 4) of its first skinned mesh."""
     if needs_mesh and not len(scene["mesh_names"]):
         raise FileError("has no mesh")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
@@ -53,6 +53,7 @@ def scene_document(
     made.add_nodes(scene)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is told later
         skins = scene_skins(scene)
+        world = scene_world(scene, skins)
     for k in range(len(scene["mesh_names"])):
         made.add_scene_mesh(scene, k, skins.get(k))
     made.add_clips(scene)
@@ -63,7 +64,7 @@ def scene_document(
     if placed:
         names = [str(scene["node_names"][node]) for node in placed]
         document.warnings.append(mended_warning(names))
-    return document
+    return document, world
 
 
 def dropped_note(scene: Mapping[str, NDArray]) -> str:
@@ -166,14 +167,14 @@ READ = {
 def read_scene(path: Path, accessories: bool = False) -> Rig:
     """Load an FBX or USD file; see `cutcell.load`."""
     kind, scene = _kind(path), scene_arrays(path)
-    document = scene_document(scene, path, f"cutcell, from {kind}")
+    document, world = scene_document(scene, path, f"cutcell, from {kind}")
     lost = (
         f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {READ[kind]} are read, with normals, "
         "texture coordinates, and of its materials the base colours with their images; it is saved "
         "as a GLB without what else its materials have"
     )
     document.warnings += [lost + dropped_note(scene), *map(str, scene.get("notes", ()))]
-    return read_rig(document, path, scene_world(scene), accessories, why_bare=_why_bare(scene))
+    return read_rig(document, path, world, accessories, why_bare=_why_bare(scene))
 
 
 def scene_arrays(path: Path) -> Mapping[str, NDArray]:

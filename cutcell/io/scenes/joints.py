@@ -51,17 +51,14 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
     return skins
 
 
-def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
+def scene_world(scene: Mapping[str, NDArray], skins: Mapping[int, SceneSkin]) -> NDArray | None:
     """Return the matrix of the first skinned mesh, since its joints may be posed."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        skinned = scene_skins(scene)
-    if not skinned:
+    if not skins:
         return None
-    first = min(skinned)
-    with np.errstate(over="ignore", invalid="ignore"):
-        world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
-        stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
-        return stands if _inverse(stands)[1] else None
+    first = min(skins)
+    world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
+    stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
+    return stands if _inverse(stands)[1] else None
 
 
 def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
