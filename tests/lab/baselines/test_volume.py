@@ -13,6 +13,7 @@ from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.isolated import __main__ as workers
 from cutcell.isolated import run as apart
 from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.volumes import volume
 from cutcell_lab.baselines.volumes.volume import _fill as fill
 from cutcell_lab.isolated import quasi_harmonic, smooth, tetrahedra
 from tests import meshes
@@ -228,7 +229,7 @@ def test_a_library_that_dies_takes_nothing_along(monkeypatch, code, words):
 
 def test_a_solver_that_dies_is_told_from_a_mesher(monkeypatch):
     code = (
-        "import sys, runpy; sys.argv[1] == 'bbw' and sys.exit(4); "
+        "import sys, runpy; sys.argv[1].endswith(':bounded') and sys.exit(4); "
         "runpy.run_module('cutcell.isolated', run_name='__main__', alter_sys=True)"
     )
     monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", code))
@@ -237,16 +238,18 @@ def test_a_solver_that_dies_is_told_from_a_mesher(monkeypatch):
     assert set(found.seconds) == {"tetrahedra", "weights"}
 
 
-def test_without_a_library_the_result_says_so(monkeypatch, tmp_path):
-    monkeypatch.setitem(workers.TASKS, "bbw", "nowhere:none")
-    np.savez(tmp_path / "job.npz")
-    workers.main("bbw", str(tmp_path / "job.npz"), str(tmp_path / "result.npz"))
-    failed = str(np.load(tmp_path / "result.npz")["failed"])
+def test_without_a_library_the_result_says_so(monkeypatch):
+    monkeypatch.setitem(volume.TASKS, "bbw", "nowhere:none")
+    failed = METHODS["bbw"](bar(4)).failed
     assert failed.endswith("nowhere is not installed; try: pip install 'cutcell[copyleft]'")
 
 
 def test_what_a_task_raises_becomes_words(tmp_path):
     points, faces = meshes.tube()
     np.savez(tmp_path / "job.npz", points=points, faces=faces, handles=HANDLES)
-    workers.main("tetgen", str(tmp_path / "job.npz"), str(tmp_path / "result.npz"))
+    workers.main(
+        "cutcell_lab.isolated.tetrahedra:by_tetgen",
+        str(tmp_path / "job.npz"),
+        str(tmp_path / "result.npz"),
+    )
     assert "TetGen cannot fill" in str(np.load(tmp_path / "result.npz")["failed"])
