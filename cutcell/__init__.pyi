@@ -18,12 +18,10 @@ from .diagnosis import Finding as Finding
 from .diagnosis import JointLoss as JointLoss
 from .diagnosis import clean as clean
 from .diagnosis import diagnose as diagnose
-from .editing import Brush as Brush
 from .editing import Explanation as Explanation
 from .editing import JointShare as JointShare
 from .editing import corrected_rig as corrected_rig
 from .editing import explain as explain
-from .editing import paint_weights as paint_weights
 from .editing import refine_weights as refine_weights
 from .editing.corrections import Corrections as Corrections
 from .editing.corrections import JointCorrection as JointCorrection

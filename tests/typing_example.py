@@ -85,12 +85,6 @@ def look(rig: cutcell.Rig) -> list[str]:
     return [*names, *(finding.message for finding in findings)]
 
 
-def paint(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    brush = cutcell.Brush(0.1, mode="smooth", strength=0.5)
-    assert_type(brush.mode, cutcell.editing.stroke.BrushMode)
-    return cutcell.paint_weights(rig, weights, "Hand.L", [7, 8], brush, mirrored=True)
-
-
 def why(rig: cutcell.Rig) -> dict[str, float]:
     found = cutcell.explain(rig, 7, method="paper", connectivity="any")
     assert_type(found, cutcell.Explanation)

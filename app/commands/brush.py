@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.editing.correct import locked_by
-from cutcell.editing.stroke import Brush, PaintSurface, Stroke
 from cutcell.errors import CutcellError
 from cutcell_viewers.skin import skin_of_weights
 
+from ..editing.stroke import Brush, PaintSurface, Stroke
 from ..scenes.weights import painted_colors
 from ..state import PANELS, State
 from ..state.brush import (

@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.binding import Binding
-from cutcell.editing import cross_section_centre
 from cutcell.editing.correct import corrected_rig
 from cutcell.editing.corrections import Corrections, JointCorrection
-from cutcell.editing.symmetry import Mirror, find_joint_mirror
+from cutcell.editing.symmetry import Mirror
 from cutcell.errors import CutcellError, SkeletonError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.character import to_scene
 
+from ..editing import cross_section_centre, find_joint_mirror
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
 from .binding import binding_request, binding_work, previewer

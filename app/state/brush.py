@@ -9,8 +9,9 @@ import numpy as np
 import param
 from numpy.typing import NDArray
 
-from cutcell.editing.stroke import BrushMode
 from cutcell.rig import TriangleMesh
+
+from ..editing.stroke import BrushMode
 
 MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
 """Radius of the brush, relative to the character's longest side."""

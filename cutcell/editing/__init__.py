@@ -1,15 +1,11 @@
-"""Manual edits: corrections, brush strokes, locks, symmetry, smoothing."""
+"""Manual edits: corrections, locks, symmetry, smoothing, and the steps of a binding."""
 
-from .brush import paint_weights
 from .correct import corrected_rig
 from .corrections import Corrections, JointCorrection, PartCorrection
 from .explain import Explanation, JointShare, Piece, explain
-from .limb import cross_section_centre
 from .refine import refine_weights
-from .stroke import Brush
 
 __all__ = [
-    "Brush",
     "Corrections",
     "Explanation",
     "JointCorrection",
@@ -17,8 +13,6 @@ __all__ = [
     "PartCorrection",
     "Piece",
     "corrected_rig",
-    "cross_section_centre",
     "explain",
-    "paint_weights",
     "refine_weights",
 ]

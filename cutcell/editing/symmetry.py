@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
-from ..errors import MeshError, SkeletonError
+from ..errors import MeshError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
 
@@ -38,19 +39,12 @@ def find_mirror(rig: Rig) -> Mirror:
     """Find the plane, orthogonal to x, y or z, across which most vertices have a partner."""
     used = np.zeros(len(rig.mesh.vertices), bool)
     used[rig.mesh.faces] = True
-    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
-    best: Mirror | None = None
-    share = 0.0
-    for axis in range(3):
-        middle = float(rig.mesh.bounds[:, axis].mean())
-        for position in {middle, float(np.median(rig.skeleton.joints[:, axis])), 0.0}:
-            joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
-            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
-                continue
-            vertex = _vertex_partners(rig.mesh.vertices, axis, position, diagonal)
-            score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
-            if score > share:
-                best, share = Mirror(axis, position, vertex, joint), score
+    best, share = None, 0.0
+    for axis, position, joint in mirror_planes(rig):
+        vertex = _vertex_partners(rig.mesh.vertices, axis, position, mesh_diagonal(rig))
+        score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
+        if score > share:
+            best, share = Mirror(axis, position, vertex, joint), score
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
     if best is None or matched < MIN_SHARE:
         raise MeshError(
@@ -61,34 +55,21 @@ def find_mirror(rig: Rig) -> Mirror:
     return best
 
 
-def find_joint_mirror(rig: Rig) -> Mirror:
-    """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
+def mesh_diagonal(rig: Rig) -> float:
+    """Return the length of the diagonal of the mesh's bounding box."""
+    return float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
 
-    Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
-    """
-    joints = rig.skeleton.joints
-    if not len(joints):
-        raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
-    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
-    best: Mirror | None = None
-    share = 0.0
+
+def mirror_planes(rig: Rig) -> Iterator[tuple[int, float, NDArray[np.intp]]]:
+    """Yield axis, position and partners of joints (j,) of planes that mirror some joint."""
+    tolerance = JOINT_TOLERANCE * mesh_diagonal(rig)
     for axis in range(3):
         middle = float(rig.mesh.bounds[:, axis].mean())
-        for position in (0.0, middle, float(np.median(joints[:, axis]))):
-            joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
-            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
-                continue
-            gap = _reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
-            exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / (JOINT_TOLERANCE * diagonal)
-            score = float((joint >= 0).mean()) + 0.1 * exact
-            if score > share:
-                best, share = Mirror(axis, position, np.empty(0, np.intp), joint), score
-    if best is None or (best.joint >= 0).mean() < MIN_SHARE:
-        raise SkeletonError(
-            f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
-            "joints have a partner on the other side"
-        )
-    return best
+        median = float(np.median(rig.skeleton.joints[:, axis]))
+        for position in dict.fromkeys((0.0, middle, median)):
+            joint = _joint_partners(rig.skeleton, axis, position, tolerance)
+            if np.any((joint >= 0) & (joint != np.arange(len(joint)))):
+                yield axis, position, joint
 
 
 def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
@@ -122,7 +103,7 @@ def balance(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]
     return result
 
 
-def _reflected(points: NDArray[np.float64], axis: int, position: float) -> NDArray[np.float64]:
+def reflected(points: NDArray[np.float64], axis: int, position: float) -> NDArray[np.float64]:
     result = points.copy()
     result[:, axis] = 2 * position - result[:, axis]
     return result
@@ -135,7 +116,7 @@ def _vertex_partners(
     # Welded vertices: copies of a vertex at a seam must all get the same partner.
     points, welded = weld(vertices, WELD_TOLERANCE * diagonal)
     distance, near = cKDTree(points).query(
-        _reflected(points, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
+        reflected(points, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
     )
     near[np.isinf(distance)] = -1
     mutual = (near >= 0) & (near[near] == np.arange(len(near)))
@@ -152,8 +133,8 @@ def _joint_partners(
     """Pair joints by position; of several at one position, those whose branches lie alike."""
     joints = skeleton.joints
     branch = skeleton.subtree @ joints / skeleton.subtree.sum(axis=1, keepdims=True)
-    gap = cdist(_reflected(joints, axis, position), joints)
-    branch_gap = cdist(_reflected(branch, axis, position), branch)
+    gap = cdist(reflected(joints, axis, position), joints)
+    branch_gap = cdist(reflected(branch, axis, position), branch)
     depth = skeleton.subtree.sum(axis=0)
     unlike = np.abs(depth[:, None] - depth) / len(joints)
     cost = np.where(gap <= tolerance, (gap + branch_gap) / tolerance + unlike, 1e6)

@@ -10,6 +10,7 @@ import numpy as np
 
 import cutcell
 import cutcell_viewers
+from cutcell_app.editing import Brush, paint_weights
 from cutcell_assets import demo_path
 from cutcell_viewers.weights_scene import weights_scene
 
@@ -24,8 +25,8 @@ names = rig.skeleton.names
 head, neck = names.index("head"), names.index("neck")
 height = float(np.ptp(rig.mesh.vertices[:, 1]))
 collar = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[neck], axis=1).argmin()
-brush = cutcell.Brush(radius=0.08 * height, mode="add", strength=0.8)
-painted = cutcell.paint_weights(rig, binding.weights, head, [collar], brush, mirrored=True)
+brush = Brush(radius=0.08 * height, mode="add", strength=0.8)
+painted = paint_weights(rig, binding.weights, head, [collar], brush, mirrored=True)
 for weights in (binding.weights, painted):
     print("weight of the head at the collar:", weights[collar, head].round(2))
 picture = cutcell_viewers.show(weights_scene(rig, painted, head))

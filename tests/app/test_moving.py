@@ -9,10 +9,10 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection
-from cutcell.editing import cross_section_centre
 from cutcell.errors import SkeletonError
 from cutcell.rig import Skeleton, TriangleMesh
 from cutcell_app.commands import keys, loading, moving
+from cutcell_app.editing import cross_section_centre
 from cutcell_app.panels.moving import place
 from cutcell_app.scenes import resolve
 from cutcell_app.state.corrections import from_text, to_text

@@ -5,9 +5,10 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell import Brush, Corrections, paint_weights
+from cutcell import Corrections
 from cutcell_app.commands import brush, correct, keys, loading, pose
 from cutcell_app.commands.brush import STEPS, in_steps, radius_of
+from cutcell_app.editing import Brush, paint_weights
 from cutcell_app.panels.brush import brush as section_of_brush
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.weights import painted_colors

@@ -10,14 +10,13 @@ from cutcell import (
     ParameterError,
     Rig,
     Skeleton,
-    SkeletonError,
     TriangleMesh,
     WeightsError,
 )
 from cutcell.editing import refine_weights
 from cutcell.editing.locks import joint_index, lock_joints
 from cutcell.editing.refine import smooth_weights
-from cutcell.editing.symmetry import find_joint_mirror, find_mirror
+from cutcell.editing.symmetry import find_mirror
 from tests import meshes
 
 RNG = np.random.default_rng(7)
@@ -268,22 +267,3 @@ def test_what_cannot_be_refined_is_refused_before_weights_are_computed(asked, se
         cutcell.bind(rig, progress=lambda stage, done: pytest.fail("it has begun"), **asked)
     with pytest.raises(CutcellError, match=sentence):
         refine_weights(rig, random_weights(len(rig.mesh.vertices), 4), **asked)
-
-
-def test_the_joints_of_a_character_with_a_parting_in_its_hair_are_mirrored(demo_paths):
-    rig = cutcell.load(demo_paths[0].with_name("biped.glb"))
-    mirror = find_joint_mirror(rig)
-    names = np.array(rig.skeleton.names)
-    other = [name.translate(str.maketrans("LR", "RL")) for name in names]
-    assert mirror.axis == 0
-    assert names[mirror.joint].tolist() == other
-    half = rig.skeleton.joints.copy()
-    half[:, 0] = np.abs(half[:, 0]) + np.linspace(0, 0.4, len(half))
-    with pytest.raises(SkeletonError, match="is not mirrored across x, y or z"):
-        find_joint_mirror(rig.with_joints(half))
-
-
-def test_without_joints_there_is_no_partner():
-    rig = Rig(strip(), Skeleton(np.empty((0, 3)), []))
-    with pytest.raises(SkeletonError, match="has no joints"):
-        find_joint_mirror(rig)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cutcell.editing.reach import SurfaceReach
 from cutcell.rig import TriangleMesh
+from cutcell_app.editing.reach import SurfaceReach
 from tests import meshes, naive
 
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from ..geometry.edges import find_edges
-from ..geometry.weld import WELD_TOLERANCE, weld
-from ..rig import TriangleMesh
+from cutcell.geometry.edges import find_edges
+from cutcell.geometry.weld import WELD_TOLERANCE, weld
+from cutcell.rig import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,13 +13,14 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from ..errors import ParameterError
-from ..geometry.laplacian import cotangent_laplacian, vertex_areas
-from ..rig import Rig, TriangleMesh
-from ..rig.checks import check_choice, check_number
-from .locks import joint_index
+from cutcell.editing.locks import joint_index
+from cutcell.editing.symmetry import Mirror
+from cutcell.errors import ParameterError
+from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
+from cutcell.rig import Rig, TriangleMesh
+from cutcell.rig.checks import check_choice, check_number
+
 from .reach import SurfaceReach
-from .symmetry import Mirror
 
 BrushMode = Literal["add", "subtract", "replace", "smooth"]
 

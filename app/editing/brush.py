@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import ParameterError, WeightsError
-from ..rig import Rig
-from ..rig.checks import as_array, check_flag, check_integer, shown
+from cutcell.errors import ParameterError, WeightsError
+from cutcell.rig import Rig
+from cutcell.rig.checks import as_array, check_flag, check_integer, shown
+
+from .mirror import find_joint_mirror
 from .stroke import Brush, PaintSurface, Stroke
-from .symmetry import find_joint_mirror
 
 MAX_INFLUENCES = 2**15
 
@@ -70,8 +71,8 @@ def paint_weights(
 
     Examples
     --------
-    >>> brush = cutcell.Brush(radius=0.1, strength=0.5)
-    >>> painted = cutcell.paint_weights(rig, weights, "Hand.L", [1017], brush)  # doctest: +SKIP
+    >>> brush = Brush(radius=0.1, strength=0.5)
+    >>> painted = paint_weights(rig, weights, "Hand.L", [1017], brush)  # doctest: +SKIP
     """
     before = np.asarray(weights, float)
     count = len(rig.mesh.vertices)

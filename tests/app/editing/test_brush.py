@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import cutcell
-from cutcell import Brush, ParameterError, Rig, Skeleton, TriangleMesh, WeightsError, paint_weights
-from cutcell.editing.stroke import PaintSurface, Stroke
-from cutcell.editing.symmetry import find_joint_mirror
+from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
 from cutcell.errors import SkeletonError
+from cutcell_app.editing import Brush, find_joint_mirror, paint_weights
+from cutcell_app.editing.stroke import PaintSurface, Stroke
 
 CELLS, WIDE = 20, 4
 GAP = 0.06
@@ -281,10 +280,6 @@ def test_a_mirror_of_joints_is_enough_where_the_mesh_has_no_partner(rig, at):
     stroke.pass_over(np.array([[at[8, 1]]]), np.ones((1, 1)))
     vertices, rows = stroke.painted()
     assert (rows[:, LEFT] >= rig.weights[vertices, LEFT]).all()
-
-
-def test_painting_is_public():
-    assert cutcell.paint_weights is paint_weights
 
 
 def test_only_vertices_within_a_selection_are_painted(rig):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import SkeletonError
-from ..graph.winding import winding_number
-from ..rig import Rig, Skeleton
-from ..rig.checks import check_integer
+from cutcell.errors import SkeletonError
+from cutcell.graph.winding import winding_number
+from cutcell.rig import Rig, Skeleton
+from cutcell.rig.checks import check_integer
 
 DIRECTIONS = 96
 """In the plane across the limb, in which the skin is looked for."""
