@@ -11,7 +11,6 @@ from . import rig as rig
 from . import templates as templates
 from . import weights as weights
 from .binding import Binding as Binding
-from .binding import bind as bind
 from .diagnosis import Cleaned as Cleaned
 from .diagnosis import Diagnosis as Diagnosis
 from .diagnosis import Finding as Finding
@@ -20,6 +19,7 @@ from .diagnosis import clean as clean
 from .diagnosis import diagnose as diagnose
 from .editing import Explanation as Explanation
 from .editing import JointShare as JointShare
+from .editing import bind as bind
 from .editing import corrected_rig as corrected_rig
 from .editing import explain as explain
 from .editing import refine_weights as refine_weights

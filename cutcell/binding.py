@@ -1,47 +1,21 @@
-"""All stages in one call: the only place that composes them."""
+"""The steps from a rig to its weights, and the record of a binding."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
-from time import perf_counter
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .editing.binding_warnings import binding_warnings
-from .editing.correct import (
-    adjustments_of,
-    apply_overrides,
-    corrected_parts,
-    corrected_rig,
-    joints_measured,
-    locked_by,
-)
-from .editing.corrections import Corrections
-from .editing.refine import RefineOptions, check_refinement, refine_weights
-from .errors import SkeletonError
 from .geodesics import BoneDistances, bone_distances
-from .geodesics.bone_extents.skins import method_per_character
 from .graph import CutCellGraph, build_graph
-from .graph.fingerprint import graph_fingerprint, require_same
-from .graph.lattice import Lattice
-from .method import ANIMATION, Method, MethodName, Options, method_of
+from .method import Method
 from .rig import Rig
-from .rig.checks import check_positions
-from .rig.inputs import RigLike, as_rig
-from .runtime.memory import check_matrix
-from .runtime.progress import Progress, silent
 from .runtime.repr import Summarized
-from .runtime.threads import cancellable, submit
-from .weights.rig_falloff.surface_operators import SurfaceOperators
-from .weights.skinning_weights import skinning_weights
-from .weights.warm_up import is_compiled, warm_up
-
-COPIES = 4
-"""Matrices of vertices and joints that there are at a time, distances and weights, at most."""
+from .runtime.threads import submit
+from .weights.context import Context, Step
+from .weights.skinning_weights import weight_steps
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,150 +60,41 @@ class Binding(Summarized):
         }
 
 
-def bind(
-    rig: RigLike,
-    resolution: int | None = None,
-    *,
-    method: Method | MethodName = ANIMATION,
-    smoothing: int = 0,
-    symmetric: bool = False,
-    locked: Sequence[int | str] = (),
-    corrections: Corrections | None = None,
-    graph: CutCellGraph | None = None,
-    progress: Progress = silent,
-    **options: Unpack[Options],
-) -> Binding:
-    """Compute skinning weights for a rig.
-
-    It is the stages one after the other, each with the same method: `build_graph`,
-    `bone_distances`, `skinning_weights`, and last `refine_weights`.
-
-    Parameters
-    ----------
-    rig : Rig, (mesh, skeleton) or (vertices, faces, joints, parents)
-        The mesh may be of any kind that `build_graph` takes. A rig's own weights are not used,
-        except that joints without any stay without (`Skeleton.deform`).
-    resolution : int, optional
-        R, 2 to 1024; the method's when left out. That counts along the largest character where
-        the file has several, side by side, so that each is bound as if it were alone.
-    method : Method, "animation" or "paper"
-        How weights are computed. `cutcell.ANIMATION` is made to animate with, `cutcell.PAPER` is
-        the paper's method.
-    smoothing, symmetric, locked
-        See `refine_weights`.
-    corrections : Corrections, optional
-        What a person corrects: joints without weight, locked or of another reach, parts that are
-        glued, single vertices.
-    graph : CutCellGraph, optional
-        That of another binding of the same mesh by the same method, `binding.graph`: it does not
-        depend on the skeleton. What only depends on it is then not computed again.
-    progress : callable
-        See `cutcell.runtime.progress`; stages are "graph", "distances", "weights", and
-        before them "compile" the very first time on a machine, and after a change of the code.
-    **options
-        Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
-        `orient`, `samples`, `leaf`, `falloff`, `refine`, `alpha`,
-        `max_influences`, `threshold`.
-
-    Returns
-    -------
-    Binding
-
-    Raises
-    ------
-    ParameterError
-        A parameter is out of its range, or has no effect; the graph is of another mesh or method.
-    MeshError, SkeletonError, WeightsError
-        The rig cannot be bound; the sentence says why.
-
-    Examples
-    --------
-    >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
-    >>> binding = cutcell.bind(rig)  # doctest: +SKIP
-    >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
-    >>> again = cutcell.bind(moved, graph=binding.graph)  # other joints  # doctest: +SKIP
-    >>> cutcell.bind((vertices, faces, joints, parents), method="paper")  # doctest: +SKIP
-    """
-    rig = as_rig(rig)
-    method = method_of(method, resolution, **options)
-    corrections = Corrections() if corrections is None else corrections
-    rig = corrected_rig(rig, corrections)
-    if corrections.joints:
-        locked = [*locked, *locked_by(corrections)]
-    refinement: RefineOptions = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
-    _check(rig, method, refinement)
-    if graph is None and resolution is None:
-        method = method_per_character(rig, method)
-    elif graph is not None:
-        require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
-    if not is_compiled():
-        progress("compile", 0.0)
-        warm_up()
-        progress("compile", 1.0)
-    first_stage = "graph" if graph is None else "distances"
-
-    def work(report: Progress) -> Binding:
-        return _bind(rig, method, corrections, refinement, graph, report)
-
-    return cancellable(work, progress, first_stage)
-
-
-def _bind(
+def binding_steps(
     rig: Rig,
     method: Method,
-    corrections: Corrections,
-    refinement: RefineOptions,
-    graph: CutCellGraph | None,
-    progress: Progress,
-) -> Binding:
-    """Run the stages."""
-    seconds: dict[str, float] = {}
-    with _timed("graph", seconds):
-        if graph is None:
-            graph = build_graph(rig.mesh, method=method, progress=progress)
-    with _timed("distances", seconds):
+    graph: CutCellGraph | None = None,
+    distances: BoneDistances | None = None,
+    nearest_joints: int | None = None,
+    within: float | None = None,
+) -> tuple[Step, ...]:
+    """List the steps from a rig to its weights: graph, distances, and those of the weights.
+
+    A given graph, or given distances, are taken instead of new ones. `nearest_joints` and `within`
+    are those of `bone_distances`.
+    """
+    if distances is not None:
+        graph = distances.graph
+
+    def build(context: Context) -> CutCellGraph:
+        return graph or build_graph(rig.mesh, method=method, progress=context.progress)
+
+    def measure(context: Context) -> BoneDistances:
         # Another thread computes what the weights need of the surface.
-        is_rig = method.falloff == "rig"
-        surface = submit(lambda: SurfaceOperators.of(graph)) if is_rig else None
-        nearest, within = joints_measured(corrections, method)
-        distances = bone_distances(
-            graph,
+        surface = submit(context.operators) if method.falloff == "rig" else None
+        measured = distances or bone_distances(
+            context.graph,
             rig.skeleton,
             method=method,
-            nearest_joints=nearest,
+            nearest_joints=nearest_joints,
             within=within,
             allowed=rig.allowed,
-            progress=progress,
+            progress=context.progress,
         )
-    with _timed("weights", seconds):
-        progress("weights", 0.0)
-        weights = skinning_weights(
-            distances,
-            method=method,
-            allowed=rig.allowed,
-            adjustments=adjustments_of(rig, graph, corrections),
-            surface=surface() if surface else None,
-            progress=progress,
-        )
-        weights = corrected_parts(rig, graph, weights, corrections)
-        weights = refine_weights(rig, weights, method=method, **refinement)
-        weights = apply_overrides(rig, graph, weights, corrections, refinement["locked"])
-        progress("weights", 1.0)
-    warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
-    return Binding(weights, graph, distances, seconds, warnings, method)
+        if surface is not None:
+            surface()
+        context.report(0.0)
+        return measured
 
-
-def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:
-    """Refuse what a stage would refuse, before the first one has begun."""
-    Lattice.around(rig.mesh, method.resolution)
-    rig.require_joints()
-    check_positions(rig.skeleton.joints, "joint", SkeletonError)
-    check_refinement(rig, **refinement)
-    check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
-
-
-@contextmanager
-def _timed(stage: str, seconds: dict[str, float]) -> Iterator[None]:
-    begin = perf_counter()
-    yield
-    seconds[stage] = perf_counter() - begin
+    first = Step("graph", build, "graph"), Step("distances", measure, "distances")
+    return (*first, *weight_steps(method, rig.allowed))

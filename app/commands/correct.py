@@ -7,19 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing.correct import (
-    apply_overrides,
-    corrected_parts,
-    corrected_rig,
-    locked_by,
-)
+from cutcell.editing.correct import corrected_rig, correction_steps, locked_by
 from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrection
-from cutcell.editing.locks import lock_joints, locked_joints
+from cutcell.editing.locks import locked_joints
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.graph import CutCellGraph
+from cutcell.method import ANIMATION
 from cutcell.rig import Rig, Skeleton
 from cutcell.rig.deform_joints import DeformJoints, deform_joints
 from cutcell.runtime.display import shown_name
+from cutcell.weights.context import Context, run
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..files.receive import safe_name
@@ -272,10 +269,6 @@ def finished(
     max_influences: int | None,
 ) -> NDArray[np.float64]:
     """Return weights after what is corrected of them last, as `cutcell.bind` does."""
-    if not corrections:
-        return weights
-    weights = corrected_parts(rig, graph, weights, corrections)
-    locked = locked_by(corrections)
-    weights = lock_joints(rig, weights, locked, max_influences)
-    done: NDArray[np.float64] = apply_overrides(rig, graph, weights, corrections, locked)
-    return done
+    method = ANIMATION.with_options(max_influences=max_influences)
+    context = Context(method, graph=graph, weights=weights)
+    return run(correction_steps(rig, corrections), context).weights

@@ -11,14 +11,13 @@ from cutcell.editing.corrections import Corrections
 from cutcell.geodesics import BoneDistances
 from cutcell.method import Method
 from cutcell.rig import Rig
-from cutcell.weights.context import WeightContext
+from cutcell.weights.context import Context, run
 from cutcell.weights.rig_falloff.division import Division
-from cutcell.weights.rig_falloff.pipeline import with_rigid_parts, without_tail
+from cutcell.weights.rig_falloff.pipeline import RIG_STEPS
 from cutcell.weights.skinning_weights import (
     keep_strongest,
     of_vertices,
     skinning_weights,
-    weight_context,
 )
 
 from .moved_distances import MovedDistances
@@ -53,8 +52,13 @@ class Preview:
         self._distances = MovedDistances(binding.distances, method, within)
         self._falloff: _IncrementalFalloff | None = None
         if method.falloff == "rig":
-            context = weight_context(binding.distances, method, adjustments=self._adjustments)
-            self._falloff = _IncrementalFalloff(context)
+            context = Context(
+                method,
+                graph=binding.graph,
+                distances=binding.distances,
+                adjustments=self._adjustments,
+            )
+            self._falloff = _IncrementalFalloff(run(RIG_STEPS[:1], context))
 
     def bind(self, rig: Rig) -> Binding:
         """Return about what `bind` would for the rig with its joints elsewhere."""
@@ -78,30 +82,23 @@ class _IncrementalFalloff:
 
     Parameters
     ----------
-    context : WeightContext
-        Of the distances as they were.
+    context : Context
+        Of the distances as they were, with the division and the diffusion.
     """
 
-    def __init__(self, context: WeightContext) -> None:
-        assert context.division is not None
-        assert context.diffusion is not None
-        self._context, self._division, self._diffusion = (
-            context,
-            context.division,
-            context.diffusion,
-        )
-        self._spread = self._diffusion.equilibrium(self._division.weights)
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._spread = context.diffusion.equilibrium(context.division.weights)
 
     def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
         """Return the weights (k, j) of welded vertices by the distances of now."""
-        before, weights = self._division, self._spread.copy()
+        before, diffusion = self._context.division, self._context.diffusion
+        weights = self._spread.copy()
         division = Division.by(distances, before.surface, self._context.adjustments, before)
         change = np.abs(division.weights - before.weights).max(axis=0)
         changed = np.flatnonzero(change > UNSEEN)
         weights[:, changed] = 0
-        self._diffusion.solve(division.weights, changed, weights)
-        self._diffusion.normalise(weights, division.weights)
-        context = replace(self._context, distances=distances, division=division)
-        for step in (with_rigid_parts, without_tail):
-            weights = step(weights, context)
-        return weights
+        diffusion.solve(division.weights, changed, weights)
+        diffusion.normalise(weights, division.weights)
+        context = replace(self._context, distances=distances, division=division, weights=weights)
+        return run(RIG_STEPS[2:], context).weights

@@ -96,7 +96,7 @@ def bind(
     vertex, so that a hand next to a hip does not follow the hip. The paths are found in a
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
-    from ..binding import bind as compute
+    from ..editing import bind as compute
     from ..editing import corrected_rig
     from ..editing.corrections import Corrections
     from ..io import check_output, load, save, saving_notes
@@ -136,8 +136,8 @@ def bind(
         and how.max_influences is None
         and out.suffix.lower() in GLTF
     ):
+        binding, dropped = _limited(loaded, binding, corrected, touches)
         how = how.with_options(max_influences=GLTF_INFLUENCES)
-        binding, dropped = _limited(loaded, binding, how, touches, corrected)
     warnings = [*loaded.warnings, *binding.warnings, *dropped]
     files = save(out, loaded.with_weights(binding.weights))
     warnings += saving_notes(out, loaded)
@@ -186,33 +186,24 @@ def _with_template(
 def _limited(
     rig: Rig,
     binding: Binding,
-    method: Method,
-    touches: dict[str, Any],
     corrections: Corrections | None,
+    touches: dict[str, Any],
 ) -> tuple[Binding, list[str]]:
-    """Limit the influences to those of the method; return a warning about the dropped weight."""
-    from ..binding import bind as compute
-    from ..editing import refine_weights
-    from ..editing.binding_warnings import binding_warnings
+    """Limit the influences to those of glTF; return a warning about the dropped weight."""
+    from ..editing.bind import weighed_again
     from ..editing.corrections import Corrections
-    from ..weights import skinning_weights
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
-    if method.max_influences is None or most <= method.max_influences:
+    if most <= GLTF_INFLUENCES:
         return binding, []
-    if corrections:
-        weights = compute(rig, method=method, **touches, corrections=corrections).weights
-    else:
-        weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
-        weights = refine_weights(rig, weights, method=method, **touches)
-    dropped = every.sum(axis=1, where=weights == 0)
+    limited = weighed_again(
+        rig, binding, corrections or Corrections(), max_influences=GLTF_INFLUENCES, **touches
+    )
+    dropped = every.sum(axis=1, where=limited.weights == 0)
     sentence = (
-        f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
+        f"of up to {most} influences a vertex the {GLTF_INFLUENCES} largest are saved, as "
         f"glTF files are read; this drops {dropped.mean():.1%} of the weight on average and "
         f"{dropped.max():.1%} at most. --max-influences sets another number, or all"
     )
-    warnings = binding_warnings(
-        rig, binding.distances, weights, corrections or Corrections(), touches["locked"]
-    )
-    return replace(binding, weights=weights, warnings=warnings), [sentence]
+    return limited, [sentence]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..binding import bind
+from ..editing import bind
 from ..errors import WeightsError
 from ..geodesics import BoneDistances
 from ..method import ANIMATION, check_resolution

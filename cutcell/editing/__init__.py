@@ -1,5 +1,6 @@
 """Manual edits: corrections, locks, symmetry, smoothing, and the steps of a binding."""
 
+from .bind import bind
 from .correct import corrected_rig
 from .corrections import Corrections, JointCorrection, PartCorrection
 from .explain import Explanation, JointShare, Piece, explain
@@ -12,6 +13,7 @@ __all__ = [
     "JointShare",
     "PartCorrection",
     "Piece",
+    "bind",
     "corrected_rig",
     "explain",
     "refine_weights",

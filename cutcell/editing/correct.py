@@ -13,10 +13,11 @@ from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Rig
 from ..weights.adjustments import Adjustments
+from ..weights.context import Context, Step
 from ..weights.rig_falloff.rigid_accessories import attach
-from ..weights.rig_falloff.surface_operators import SurfaceOperators
 from .corrections import Corrections
 from .locks import joint_index, lock_joints
+from .refine import refinement_steps
 from .restructure import restructured
 
 JOINTS_FOR_GAINS = 8
@@ -110,14 +111,33 @@ def adjustments_of(rig: Rig, graph: CutCellGraph, corrections: Corrections) -> A
     return Adjustments(gain, radius, graph.vertex_node[np.array(itself, np.intp)])
 
 
-def corrected_parts(
-    rig: Rig, graph: CutCellGraph, weights: NDArray[np.float64], corrections: Corrections
-) -> NDArray[np.float64]:
+def correction_steps(
+    rig: Rig,
+    corrections: Corrections,
+    smoothing: int = 0,
+    symmetric: bool = False,
+    locked: Sequence[int | str] = (),
+) -> list[Step]:
+    """List the steps that correct and refine computed weights; check their options.
+
+    See `refine_weights` for the options; joints locked by the corrections are added.
+    """
+    if corrections.joints:
+        locked = [*locked, *locked_by(corrections)]
+    ways = {part.how for part in corrections.parts.values()}
+    steps = refinement_steps(rig, smoothing, symmetric, locked)
+    if ways & {"glued", "touching"}:
+        steps.insert(0, Step("parts", lambda context: bind_parts(rig, context, corrections)))
+    if corrections.vertices or "file" in ways:
+        override = Step("override", lambda context: _override(rig, context, corrections, locked))
+        steps.append(override)
+    return steps
+
+
+def bind_parts(rig: Rig, context: Context, corrections: Corrections) -> NDArray[np.float64]:
     """Glue components to joints, or let them follow the body where they touch it."""
-    if all(part.how in ("itself", "file") for part in corrections.parts.values()):
-        return weights
-    surface = SurfaceOperators.of(graph)
-    node, weights = graph.vertex_node, weights.copy()
+    surface, graph = context.operators(), context.graph
+    node, weights = graph.vertex_node, context.weights.copy()
     component = surface.component[node]
     touching = np.zeros(component.max() + 1, np.bool_)
     for vertex, part in corrections.parts.items():
@@ -145,31 +165,27 @@ def corrected_parts(
     return weights
 
 
-def apply_overrides(
-    rig: Rig,
-    graph: CutCellGraph,
-    weights: NDArray[np.float64],
-    corrections: Corrections,
-    locked: Sequence[int | str] = (),
+def _override(
+    rig: Rig, context: Context, corrections: Corrections, locked: Sequence[int | str]
 ) -> NDArray[np.float64]:
     """Put in the file's weights of parts that keep them, then what was set by hand.
 
     Locked joints keep the file's weights all the same.
     """
+    weights, overrides = context.weights.copy(), corrections.vertices
     in_file = [v for v, part in corrections.parts.items() if part.how == "file"]
     if in_file and rig.weights is not None:
-        component = SurfaceOperators.of(graph).component[graph.vertex_node]
+        component = context.operators().component[context.graph.vertex_node]
         from_file = np.isin(component, component[in_file]) & rig.weights.any(axis=1)
-        weights = np.where(from_file[:, None], rig.weights, weights)
-    overrides = corrections.vertices
+        weights[from_file] = rig.weights[from_file]
     if not overrides:
         return weights
-    weights, index = weights.copy(), _first_of(rig)
-    weights[list(overrides)] = 0
+    index, rows = _first_of(rig), list(overrides)
+    weights[rows] = 0
     row = [vertex for vertex, joints in overrides.items() for _ in joints]
     column = [index[name] for joints in overrides.values() for name in joints]
     weights[row, column] = [value for joints in overrides.values() for value in joints.values()]
-    weights[list(overrides)] = lock_joints(rig, weights, locked)[list(overrides)]
+    weights[rows] = lock_joints(rig, weights, locked)[rows]
     return weights
 
 

@@ -8,36 +8,21 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geodesics import (
-    FALLBACK_REASONS,
-    PIECES,
-    BoneDistances,
-    bone_distances,
-    trace_path,
-)
+from ..geodesics import FALLBACK_REASONS, PIECES, BoneDistances, trace_path
 from ..geodesics.bone_extents.skins import method_per_character
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
-from ..graph import build_graph
 from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
 from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
-from ..weights.context import WeightContext
+from ..weights.context import Context, Step, run
 from ..weights.rig_falloff.division import facing
-from ..weights.skinning_weights import weight_context, weight_steps
-from .correct import (
-    adjustments_of,
-    apply_overrides,
-    corrected_parts,
-    corrected_rig,
-    joints_measured,
-    locked_by,
-)
+from .bind import bind_steps
+from .correct import corrected_rig
 from .corrections import Corrections
-from .locks import lock_joints
 
 STEPS = {
     "falloff": "shares by distance",
@@ -48,9 +33,11 @@ STEPS = {
     "storable": "storable in file",
     "limit": "limited",
     "normalise": "normalised",
-    "correct": "corrected",
+    "parts": "parts corrected",
+    "lock": "joints locked",
+    "override": "vertex corrected",
 }
-"""Labels of the steps from distances to weights. A method has some of them."""
+"""Labels of the steps from distances to weights. A binding has some of them."""
 SOME = 1e-4
 """Joints that no step gives as much are left out, unless the file has weight of them."""
 
@@ -197,73 +184,43 @@ def explain(
     measured_at = None if distances is None else distances.graph.lattice.resolution
     if resolution is None and measured_at != method.resolution:  # as `bind` does
         method = method_per_character(rig, method)
-    if distances is None:
-        graph = build_graph(rig.mesh, method=method, progress=progress)
-        nearest, within = joints_measured(corrections, method)
-        distances = bone_distances(
-            graph,
-            rig.skeleton,
-            method=method,
-            nearest_joints=nearest,
-            within=within,
-            allowed=rig.allowed,
-            progress=progress,
-        )
-    else:
+    if distances is not None:
         expected = graph_fingerprint(rig.mesh, method)
         expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
         require_same("distances", distances.fingerprint, expected)
-    progress("weights", 0.0)
-    context = weight_context(
-        distances, method, rig.allowed, adjustments_of(rig, distances.graph, corrections)
-    )
-    steps = _rows(rig, context, vertex, corrections)
-    most = np.max(list(steps.values()), axis=0)
+    context = Context(method, rig.allowed, progress)
+    rows: dict[str, NDArray[np.float64]] = {}
+
+    def keep(step: Step) -> None:
+        if step.name not in STEPS:
+            return
+        row = vertex if context.is_per_vertex else context.graph.vertex_node[vertex]
+        weights = context.weights[row].copy()
+        if step.name == "normalise":
+            rows["limit"] = np.where(weights > 0, next(reversed(rows.values())), 0.0)
+        rows[step.name] = weights
+
+    run(bind_steps(rig, method, corrections, distances=distances), context, keep)
+    last = next(reversed(rows.values()))
+    most = np.max(list(rows.values()), axis=0)
     own = None if rig.weights is None else rig.weights[vertex]
     listed = np.flatnonzero((most > SOME) | (0 if own is None else own > SOME))
-    last = list(steps.values())[-1]
-    shares = []
-    for done, joint in enumerate(listed[np.argsort(-last[listed], kind="stable")].tolist()):
-        progress("weights", done / len(listed))
-        shares.append(_share(rig, distances, vertex, joint, context, steps))
+    joints = listed[np.argsort(-last[listed], kind="stable")].tolist()
+    shares = tuple(_share(rig, vertex, joint, context, rows) for joint in joints)
     progress("weights", 1.0)
-    reason = int(distances.fallback[vertex])
+    reason = int(context.distances.fallback[vertex])
     why = "" if reason == REACHED else FALLBACK_REASONS[reason]
-    return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, tuple(shares))
+    return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, shares)
 
 
-def _rows(
-    rig: Rig, context: WeightContext, vertex: int, corrections: Corrections
-) -> dict[str, NDArray[np.float64]]:
-    """Run the steps of `bind`, and keep a vertex' row of each."""
-    node = context.distances.graph.vertex_node[vertex]
-    rows: dict[str, NDArray[np.float64]] = {}
-    weights = np.empty((0, 0))
-    for step in weight_steps(context):
-        weights = step.run(weights, context)
-        row = weights[vertex if step.is_per_vertex else node].copy()
-        if step.name == "normalise":
-            before = next(reversed(rows.values()))
-            rows["limit"] = np.where(row > 0, before, 0.0)
-        if step.name in STEPS:
-            rows[step.name] = row
-    if corrections:
-        graph = context.distances.graph
-        weights = corrected_parts(rig, graph, weights, corrections)
-        locked = locked_by(corrections)
-        weights = lock_joints(rig, weights, locked, context.method.max_influences)
-        rows["correct"] = apply_overrides(rig, graph, weights, corrections, locked)[vertex]
-    return rows
-
-
-def _factors(context: WeightContext, vertex: int, joint: int) -> dict[str, float]:
+def _factors(context: Context, vertex: int, joint: int) -> dict[str, float]:
     """Return what the falloff multiplies a joint's distance by."""
     gain = 1.0 if context.adjustments is None else float(context.adjustments.gain[joint])
     of_gain = {} if gain == 1 else {"gain": 1 / gain}
-    division = context.division
-    if division is None:
+    if context.method.falloff == "paper":
         return of_gain
-    surface, node = division.surface, context.distances.graph.vertex_node[vertex]
+    division, node = context.division, context.graph.vertex_node[vertex]
+    surface = division.surface
     radius = 1.0
     if division.beyond[node]:  # elsewhere nothing is beyond any radius
         radius = float(context.distances.at_welded[joint, node] / division.radius[joint])
@@ -277,20 +234,16 @@ def _factors(context: WeightContext, vertex: int, joint: int) -> dict[str, float
 
 
 def _share(
-    rig: Rig,
-    distances: BoneDistances,
-    vertex: int,
-    joint: int,
-    context: WeightContext,
-    steps: dict[str, NDArray[np.float64]],
+    rig: Rig, vertex: int, joint: int, context: Context, rows: dict[str, NDArray[np.float64]]
 ) -> JointShare:
-    unit, bones = distances.graph.lattice.size, distances.bones
+    distances = context.distances
+    unit, bones = context.graph.lattice.size, distances.bones
     distance = float(distances.joint[joint, vertex])
     own = np.flatnonzero(bones.joint == joint)
-    point = distances.graph.nodes[distances.graph.vertex_node[vertex]]
+    point = context.graph.nodes[context.graph.vertex_node[vertex]]
     straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)
     factors = _factors(context, vertex, joint) if np.isfinite(distance) and len(own) else {}
-    weight = {name: float(row[joint]) for name, row in steps.items()}
+    weight = {name: float(row[joint]) for name, row in rows.items()}
     return JointShare(
         joint=joint,
         name=rig.skeleton.names[joint],

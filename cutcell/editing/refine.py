@@ -14,6 +14,7 @@ from ..geometry.weld import WELD_TOLERANCE, weld
 from ..method import ANIMATION, Method, MethodName, method_of
 from ..rig import Rig, TriangleMesh
 from ..rig.checks import check_flag, check_integer
+from ..weights.context import Context, Step, run
 from ..weights.prune import prune
 from .locks import lock_joints, locked_joints
 from .symmetry import balance, find_mirror, mirror_weights
@@ -33,9 +34,6 @@ def smooth_weights(
 
     Shapes: weights (n, j); returns (n, j).
     """
-    passes = check_integer("smoothing", passes, 0, MAX_PASSES)
-    if passes == 0:
-        return weights
     side = np.ptp(mesh.bounds, axis=0).max()
     welded = weld(mesh.vertices, WELD_TOLERANCE * side)[1]
     step = _step(welded[mesh.faces], int(welded.max()) + 1)
@@ -64,7 +62,7 @@ def _step(faces: NDArray[np.int32], vertices: int) -> csr_array:
     return csr_array((values, (rows, columns)), shape=(vertices, vertices))
 
 
-class RefineOptions(TypedDict):
+class RefineOptions(TypedDict, total=False):
     """Options of `refine_weights`."""
 
     smoothing: int
@@ -117,29 +115,37 @@ def refine_weights(
     ParameterError, MeshError, WeightsError
         An option is out of range, or the rig does not allow it.
     """
-    method = method_of(method, **options)
-    symmetric = check_flag("symmetric", symmetric)
-    if smoothing or symmetric:
-        mirror = find_mirror(rig) if symmetric else None
-        weights = smooth_weights(rig.mesh, weights, smoothing)
-        if mirror is not None:
-            weights = mirror_weights(weights, mirror)
-        weights = _permitted(rig, weights)
-        order = np.lexsort(rig.skeleton.joints.T)
-        weights = prune(weights, method.max_influences, method.threshold, order)
-        if mirror is not None:
-            weights = balance(weights, mirror)
-    return lock_joints(rig, weights, locked, method.max_influences)
+    context = Context(method_of(method, **options), weights=weights)
+    return run(refinement_steps(rig, smoothing, symmetric, locked), context).weights
 
 
-def check_refinement(
-    rig: Rig, smoothing: int, symmetric: bool, locked: Sequence[int | str]
-) -> None:
-    """Refuse what `refine_weights` would, before weights are computed."""
-    check_integer("smoothing", smoothing, 0, MAX_PASSES)
-    if check_flag("symmetric", symmetric):
-        find_mirror(rig)
-    locked_joints(rig, locked)
+def refinement_steps(
+    rig: Rig, smoothing: int = 0, symmetric: bool = False, locked: Sequence[int | str] = ()
+) -> list[Step]:
+    """List the steps of `refine_weights`; check its options."""
+    smoothing = check_integer("smoothing", smoothing, 0, MAX_PASSES)
+    mirror = find_mirror(rig) if check_flag("symmetric", symmetric) else None
+    is_locked = locked_joints(rig, locked)
+    steps = []
+    if smoothing:
+        steps.append(Step("smooth", lambda c: smooth_weights(rig.mesh, c.weights, smoothing)))
+    if mirror is not None:
+        steps.append(Step("mirror", lambda c: mirror_weights(c.weights, mirror)))
+    if steps:
+        steps.append(Step("prune", lambda c: _prune(rig, c.weights, c.method)))
+    if mirror is not None:
+        steps.append(Step("balance", lambda c: balance(c.weights, mirror)))
+    if is_locked.any():
+        steps.append(
+            Step("lock", lambda c: lock_joints(rig, c.weights, locked, c.method.max_influences))
+        )
+    return steps
+
+
+def _prune(rig: Rig, weights: NDArray[np.float64], method: Method) -> NDArray[np.float64]:
+    """Keep the largest weights (n, j) that the file can store."""
+    order = np.lexsort(rig.skeleton.joints.T)
+    return prune(_permitted(rig, weights), method.max_influences, method.threshold, order)
 
 
 def _permitted(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:

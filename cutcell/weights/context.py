@@ -1,57 +1,96 @@
-"""Steps from distances to weights, and what they need."""
+"""The steps of a binding: one list, one context that they share, and the loop over them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics import BoneDistances
+from ..graph import CutCellGraph
 from ..method import Method
-from ..runtime.progress import Tell
+from ..runtime.progress import Progress, silent
 from .adjustments import Adjustments
 from .rig_falloff.diffusion import Diffusion
 from .rig_falloff.division import Division
+from .rig_falloff.surface_operators import SurfaceOperators
+
+PENDING: Any = None
+"""Value of results that no step has computed yet."""
+STAGES = ("graph", "distances")
+"""Steps whose time is measured separately; all others belong to the stage "weights"."""
 
 
-@dataclass(frozen=True, eq=False)
-class WeightContext:
-    """The inputs of the steps from distances to weights.
+@dataclass(eq=False, repr=False)
+class Context:
+    """The inputs of the steps, and their results so far.
 
     Parameters
     ----------
-    distances : BoneDistances
-        With the paper's falloff divided by the gains of the adjustments.
     method : Method
     allowed : array, shape (n, j), bool, or None
         Which joints each vertex may follow.
+    progress : callable
+    graph : CutCellGraph
+    distances : BoneDistances
     adjustments : Adjustments or None
-    division : Division or None
-        Of the surface among the joints; None with the paper's falloff.
-    diffusion : Diffusion or None
-        Over the surface; None with the paper's falloff.
-    report : callable
-        Called with the fraction that is done.
+    surface : SurfaceOperators or None
+        Operators of the graph's mesh; computed when left out.
+    division : Division
+        The surface divided among the joints. The paper's falloff has none.
+    diffusion : Diffusion
+        Diffusion over the surface. The paper's falloff has none.
+    weights : array, shape (k, j) or (n, j), float64
+    is_per_vertex : bool
+        Whether `weights` has a row for each vertex instead of each welded vertex.
+    seconds : dict of str to float
+        Time taken by each stage.
     """
 
-    distances: BoneDistances
     method: Method
-    allowed: NDArray[np.bool_] | None
-    adjustments: Adjustments | None
-    division: Division | None
-    diffusion: Diffusion | None
-    report: Tell
+    allowed: NDArray[np.bool_] | None = None
+    progress: Progress = silent
+    graph: CutCellGraph = PENDING
+    distances: BoneDistances = PENDING
+    adjustments: Adjustments | None = None
+    surface: SurfaceOperators | None = None
+    division: Division = PENDING
+    diffusion: Diffusion = PENDING
+    weights: NDArray[np.float64] = PENDING
+    is_per_vertex: bool = False
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def report(self, done: float) -> None:
+        """Report the fraction of the stage "weights" that is done."""
+        self.progress("weights", done)
+
+    def operators(self) -> SurfaceOperators:
+        """Return the operators of the graph's mesh, computed once."""
+        if self.surface is None:
+            self.surface = SurfaceOperators.of(self.graph)
+        return self.surface
 
 
 class Step(NamedTuple):
-    """A step: `run` takes the weights of the step before and returns those after it.
-
-    They have a row for each vertex if `is_per_vertex`, else for each welded vertex.
-    """
+    """A step: `run` returns the new value of the field `result` of the context."""
 
     name: str
-    run: Callable[[NDArray[np.float64], WeightContext], NDArray[np.float64]]
-    is_per_vertex: bool = False
+    run: Callable[[Context], Any]
+    result: str = "weights"
+
+
+def run(
+    steps: Iterable[Step], context: Context, after: Callable[[Step], None] = lambda step: None
+) -> Context:
+    """Run steps one after the other, and call `after` when each is done; return the context."""
+    for step in steps:
+        begin = perf_counter()
+        setattr(context, step.result, step.run(context))
+        stage = step.name if step.name in STAGES else "weights"
+        context.seconds[stage] = context.seconds.get(stage, 0.0) + perf_counter() - begin
+        after(step)
+    return context

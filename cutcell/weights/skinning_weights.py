@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Unpack
 
 import numpy as np
@@ -15,11 +14,11 @@ from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
 from ..runtime.threads import in_threads, parts, threads
 from .adjustments import Adjustments
-from .context import Step, WeightContext
+from .context import Context, Step, run
 from .learned.shares import LEARNED_STEP
 from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
-from .rig_falloff.pipeline import RIG_STEPS, divide_and_prepare
+from .rig_falloff.pipeline import RIG_STEPS
 from .rig_falloff.surface_operators import SurfaceOperators
 
 
@@ -75,77 +74,58 @@ def skinning_weights(
             f"{measured} nearest joints of each vertex alone: measure them again with this method"
         )
 
-    context = weight_context(
-        distances, method, allowed, adjustments, surface, lambda done: progress("weights", done)
-    )
-    weights = np.empty((0, 0))
-    for step in weight_steps(context):
-        weights = step.run(weights, context)
-    return weights
+    graph = distances.graph
+    context = Context(method, allowed, progress, graph, distances, adjustments, surface)
+    return run(weight_steps(method, allowed), context).weights
 
 
-def weight_context(
-    distances: BoneDistances,
-    method: Method,
-    allowed: NDArray[np.bool_] | None = None,
-    adjustments: Adjustments | None = None,
-    surface: SurfaceOperators | None = None,
-    report: Tell = lambda done: None,
-) -> WeightContext:
-    """Prepare what the steps of a method's falloff need."""
-    if method.falloff == "paper":
-        if adjustments is not None:
-            distances = _divided(distances, adjustments.gain)
-        return WeightContext(distances, method, allowed, adjustments, None, None, report)
-    surface = surface or SurfaceOperators.of(distances.graph)
-    prepared = share_of(report, 0, 0.4)
-    division, diffusion = divide_and_prepare(distances, surface, adjustments, prepared)
-    return WeightContext(distances, method, allowed, adjustments, division, diffusion, report)
+def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tuple[Step, ...]:
+    """List the steps from distances to weights, in their order.
+
+    Shapes: allowed (n, j), see `skinning_weights`.
+    """
+    falloff = (Step("falloff", equation_1),) if method.falloff == "paper" else RIG_STEPS
+    if method.refine == "learned":
+        falloff = (RIG_STEPS[0], LEARNED_STEP, *RIG_STEPS[1:])
+    expand, normalise = Step("vertices", per_vertex), Step("normalise", limit)
+    if allowed is None:
+        return (*falloff, normalise, expand)
+    return (*falloff, expand, Step("storable", permit), normalise)  # welded vertices may differ
 
 
-def weight_steps(context: WeightContext) -> tuple[Step, ...]:
-    """List the steps from distances to weights, in their order. The first one takes no weights."""
-    is_per_vertex = context.allowed is not None  # welded vertices may follow different joints
-    falloff: tuple[Step, ...] = (Step("falloff", equation_1, is_per_vertex),)
-    if context.division is not None:
-        falloff = RIG_STEPS
-        if context.method.refine == "learned":
-            falloff = (RIG_STEPS[0], LEARNED_STEP, *RIG_STEPS[1:])
-    expand = Step("vertices", per_vertex, True)
-    if not is_per_vertex:
-        return (*falloff, Step("normalise", limit), expand)
-    if context.division is not None:
-        falloff = (*falloff, expand)
-    return (*falloff, Step("storable", permit, True), Step("normalise", limit, True))
-
-
-def equation_1(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
-    """Begin with the paper's falloff of the distances, see `paper_kernel`."""
+def equation_1(context: Context) -> NDArray[np.float64]:
+    """Apply the paper's falloff to the distances, see `paper_kernel`."""
     distances, alpha = context.distances, context.method.alpha
     assert alpha is not None
-    distance = distances.at_welded if context.allowed is None else distances.joint
-    return paper_kernel(distance, distances.graph.lattice.diagonal, alpha)
+    context.is_per_vertex = context.allowed is not None
+    distance = distances.joint if context.is_per_vertex else distances.at_welded
+    if context.adjustments is not None:
+        distance = distance / context.adjustments.gain[:, None]
+    return paper_kernel(distance, context.graph.lattice.diagonal, alpha)
 
 
-def permit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def permit(context: Context) -> NDArray[np.float64]:
     """Drop what a vertex may not follow; one left with nothing follows its nearest joint."""
     assert context.allowed is not None
-    permitted = np.where(context.allowed, weights, 0.0)
+    permitted = np.where(context.allowed, context.weights, 0.0)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
     permitted[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
     return permitted / permitted.sum(axis=1, keepdims=True)
 
 
-def limit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def limit(context: Context) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex."""
     most, threshold = context.method.max_influences, context.method.threshold
     order = _by_position(context.distances)
-    return prune(weights, most, threshold, order, share_of(context.report, 0.8, 0.9))
+    return prune(context.weights, most, threshold, order, share_of(context.report, 0.8, 0.9))
 
 
-def per_vertex(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def per_vertex(context: Context) -> NDArray[np.float64]:
     """Return the weights of all vertices, from those of welded ones."""
-    return of_vertices(context.distances.graph, weights, share_of(context.report, 0.9, 1))
+    if context.is_per_vertex:
+        return context.weights
+    context.is_per_vertex = True
+    return of_vertices(context.graph, context.weights, share_of(context.report, 0.9, 1))
 
 
 def of_vertices(
@@ -192,13 +172,6 @@ def keep_strongest(
     """
     method = Method(max_influences=max_influences, threshold=threshold)
     return prune(weights, method.max_influences, method.threshold, _by_position(distances))
-
-
-def _divided(distances: BoneDistances, gain: NDArray[np.float64]) -> BoneDistances:
-    """Divide the distances of each joint by its gain."""
-    of = distances.of_vertices
-    of = None if of is None else of / gain[:, None]
-    return replace(distances, at_welded=distances.at_welded / gain[:, None], of_vertices=of)
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -19,9 +18,10 @@ import numpy as np
 
 import cutcell
 from cutcell.rig import Rig
+from cutcell.weights.context import Context, Step, run
 from cutcell.weights.learned.forest import Forest
 from cutcell.weights.learned.shares import correct_shares
-from cutcell.weights.skinning_weights import weight_context, weight_steps
+from cutcell.weights.skinning_weights import weight_steps
 
 from .document import fill
 from .makers import maker_of
@@ -43,16 +43,18 @@ def scores_of(rig: Rig, forest: Forest) -> Scores:
     graph = cutcell.build_graph(rig.mesh)
     for mode, bound in zip(MODES, (rig, cutcell.choose_deform(rig, fresh=True)), strict=True):
         distances = cutcell.bone_distances(graph, bound.skeleton, allowed=bound.allowed)
-        context = weight_context(distances, LEARNED, bound.allowed)
-        rules = weights = context.division.weights if context.division else np.empty((0, 0))
-        for step in weight_steps(replace(context, method=cutcell.ANIMATION))[1:]:
-            rules = step.run(rules, context)
-        for step in weight_steps(context)[1:]:
-            run = partial(correct_shares, forest=forest) if step.name == "learned" else step.run
-            weights = run(weights, context)
-        scores[mode, "rules"], scores[mode, "learned"] = (
-            score_of(rig, those) for those in (rules, weights)
-        )
+        for kind, method in zip(KINDS, (cutcell.ANIMATION, LEARNED), strict=True):
+            context = Context(method, bound.allowed, graph=graph, distances=distances)
+            run(
+                [
+                    Step("learned", partial(correct_shares, forest=forest))
+                    if step.name == "learned"
+                    else step
+                    for step in weight_steps(method, bound.allowed)
+                ],
+                context,
+            )
+            scores[mode, kind] = score_of(rig, context.weights)
     return scores
 
 

@@ -26,9 +26,10 @@ from cutcell.graph import build_graph
 from cutcell.method import ANIMATION
 from cutcell.rig import Rig
 from cutcell.weights import keep_strongest
+from cutcell.weights.context import Context, run
 from cutcell.weights.rig_falloff.pipeline import TAIL
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
-from cutcell.weights.skinning_weights import permit, weight_context, weight_steps
+from cutcell.weights.skinning_weights import permit, weight_steps
 
 from .document import fill
 from .network_scores import SAME_MAKER
@@ -86,12 +87,12 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
     distances = bone_distances(
         graph, rig.skeleton, nearest_joints=ANIMATION.joints_needed, allowed=rig.allowed
     )
-    context = weight_context(distances, ANIMATION)
-    weights, by_step = np.empty((0, 0)), {}
-    for step in weight_steps(context):
-        weights = step.run(weights, context)
-        by_step[step.name] = weights.copy()
-    assert context.division is not None
+    context, by_step = Context(ANIMATION, graph=graph, distances=distances), {}
+    run(
+        weight_steps(ANIMATION),
+        context,
+        lambda step: by_step.update({step.name: context.weights.copy()}),
+    )
     weights = by_step["rigid"]
     order = np.argsort(-weights, axis=1, kind="stable")[:, :JOINTS]
     joint = np.pad(order, ((0, 0), (0, JOINTS - order.shape[1])), mode="edge")
@@ -281,8 +282,11 @@ def corrected(network: Corrector, pairs: Pairs, part: float) -> NDArray[np.float
     weights /= weights.sum(axis=1, keepdims=True)
     weights = weights[pairs.distances.graph.vertex_node]
     if pairs.rig.allowed is not None:
-        context = weight_context(pairs.distances, ANIMATION, pairs.rig.allowed)
-        weights = permit(weights, context)
+        graph, distances = pairs.distances.graph, pairs.distances
+        context = Context(
+            ANIMATION, pairs.rig.allowed, graph=graph, distances=distances, weights=weights
+        )
+        weights = permit(context)
     return keep_strongest(pairs.distances, weights)
 
 

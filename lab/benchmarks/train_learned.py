@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.rig import Rig
+from cutcell.weights.context import Context, run
 from cutcell.weights.learned.features import pair_features
 from cutcell.weights.learned.forest import STORED, Forest
-from cutcell.weights.skinning_weights import weight_context
+from cutcell.weights.skinning_weights import weight_steps
 
 from .makers import maker_of
 from .wild import SETS, characters
@@ -50,9 +51,8 @@ def sample_of(name: str, rig: Rig) -> Sample:
     assert rig.weights is not None
     graph = cutcell.build_graph(rig.mesh)
     distances = cutcell.bone_distances(graph, rig.skeleton)
-    context = weight_context(distances, cutcell.ANIMATION)
-    assert context.division is not None
-    assert context.diffusion is not None
+    context = Context(cutcell.ANIMATION, graph=graph, distances=distances)
+    run(weight_steps(cutcell.ANIMATION)[:1], context)
     spread = context.diffusion.spread(context.division.weights)
     pairs = pair_features(context.division, spread, rig.skeleton)
     node, first = np.unique(graph.vertex_node, return_index=True)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.binding import bind
+from cutcell.editing import bind
 from cutcell.errors import MeshError
 from cutcell_app.commands import binding, check, correct, export, loading
 from cutcell_app.panels.export import page

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..context import Step, WeightContext
+from ..context import Context, Step
 from .features import Pairs, pair_features
 from .forest import Forest, stored_forest
 
@@ -29,17 +29,12 @@ def learned_shares(
     return weights + TRUST * is_sure[:, None] * (shares - weights)
 
 
-def correct_shares(
-    weights: NDArray[np.float64], context: WeightContext, forest: Forest | None = None
-) -> NDArray[np.float64]:
+def correct_shares(context: Context, forest: Forest | None = None) -> NDArray[np.float64]:
     """Let a model, by default the stored one, correct shares, if the skeleton is known."""
-    division, diffusion = context.division, context.diffusion
-    skeleton = context.distances.skeleton
-    assert division is not None
-    assert diffusion is not None
+    weights, skeleton = context.weights, context.distances.skeleton
     if skeleton is None:
         return weights
-    pairs = pair_features(division, diffusion.spread(weights), skeleton)
+    pairs = pair_features(context.division, context.diffusion.spread(weights), skeleton)
     return learned_shares(weights, pairs, forest or stored_forest())
 
 

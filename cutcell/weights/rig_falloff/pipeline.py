@@ -5,64 +5,53 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geodesics import BoneDistances
 from ...runtime.compiled import no_refcount
-from ...runtime.progress import Tell, share_of
+from ...runtime.progress import share_of
 from ...runtime.threads import run_parallel
-from ..adjustments import Adjustments
-from ..context import Step, WeightContext
+from ..context import Context, Step
 from .containment import make_rigid
 from .diffusion import Diffusion
 from .division import Division
 from .rigid_accessories import attach_accessories
-from .surface_operators import SurfaceOperators
 
 TAIL = 0.05
 """Of a vertex's largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
-def divide_and_prepare(
-    distances: BoneDistances,
-    surface: SurfaceOperators,
-    adjustments: Adjustments | None = None,
-    report: Tell = lambda done: None,
-) -> tuple[Division, Diffusion]:
-    """Divide the surface; prepare its diffusion by the distance to the nearest bone."""
-    depth, resolution = distances.at_welded.min(axis=0), distances.graph.lattice.resolution
-    return run_parallel(
-        lambda: Division.by(distances, surface, adjustments),
+def share(context: Context) -> NDArray[np.float64]:
+    """Divide the surface among joints; prepare its diffusion by the distance to the nearest bone.
+
+    Returns each joint's share of the welded vertices, (k, j).
+    """
+    distances, surface = context.distances, context.operators()
+    depth, resolution = distances.at_welded.min(axis=0), context.graph.lattice.resolution
+    context.division, context.diffusion = run_parallel(
+        lambda: Division.by(distances, surface, context.adjustments),
         lambda: Diffusion.over(surface, depth, resolution),
     )
-
-
-def share(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
-    """Begin with each joint's share of the surface."""
-    assert context.division is not None
     return context.division.weights
 
 
-def spread(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def spread(context: Context) -> NDArray[np.float64]:
     """Spread shares over the skin by diffusion."""
-    assert context.diffusion is not None
-    return context.diffusion.spread(weights, share_of(context.report, 0.4, 0.8))
+    return context.diffusion.spread(context.weights, share_of(context.report, 0.4, 0.8))
 
 
-def with_rigid_parts(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def with_rigid_parts(context: Context) -> NDArray[np.float64]:
     """Let plates, wheels, eyes, buttons... move rigidly."""
-    assert context.division is not None
-    containment, surface = context.division.containment, context.division.surface
-    independent = np.zeros(len(containment), np.bool_)
+    containment, surface = context.division.containment, context.operators()
+    weights, independent = context.weights, np.zeros(len(containment), np.bool_)
     if context.adjustments is not None:
         independent[surface.component[context.adjustments.independent]] = True
     if len(containment) > 1:
         weights = make_rigid(surface, weights, independent)
-    return attach_accessories(context.distances.graph, surface, containment, weights, independent)
+    return attach_accessories(context.graph, surface, containment, weights, independent)
 
 
-def without_tail(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+def without_tail(context: Context) -> NDArray[np.float64]:
     """Subtract a part of each vertex's largest weight from all of them, in place."""
-    _subtract_tail(weights)
-    return weights
+    _subtract_tail(context.weights)
+    return context.weights
 
 
 RIG_STEPS = (

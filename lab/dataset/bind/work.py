@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell import __version__
-from cutcell.binding import Binding, bind
+from cutcell.binding import Binding
+from cutcell.editing import bind
 from cutcell.errors import CutcellError
 from cutcell.geodesics import bone_distances
 from cutcell.graph import INTERIOR, MESH, SURFACE
