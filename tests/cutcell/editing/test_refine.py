@@ -73,7 +73,7 @@ def test_smoothing_carries_weight_one_edge_a_pass_and_keeps_sums():
         np.testing.assert_allclose(found.sum(axis=1), 1)
         reached = np.unique(mesh.vertices[found[:, 1] > 0, 0])
         assert reached.min() == 3 - passes
-    assert smooth_weights(mesh, weights, 0) is weights
+    assert refine_weights(mirrored_rig(), weights) is weights
 
 
 def test_smoothing_crosses_seams_but_no_gaps():
@@ -98,7 +98,7 @@ def test_a_vertex_without_edges_keeps_its_weights():
 @pytest.mark.parametrize("passes", [-1, 1.5, 1001, "many"])
 def test_wrong_number_of_passes(passes):
     with pytest.raises(ParameterError, match="smoothing must be a whole number from 0 to 1,000"):
-        smooth_weights(strip(), one_hot(np.zeros(12, int), 1), passes)
+        refine_weights(mirrored_rig(), random_weights(12, 4), smoothing=passes)
 
 
 # Symmetry
