@@ -33,9 +33,9 @@ STEPS = {
     "storable": "storable in file",
     "limit": "limited",
     "normalise": "normalised",
-    "parts": "parts corrected",
+    "parts": "part corrected",
     "lock": "joints locked",
-    "override": "vertex corrected",
+    "override": "corrected",
 }
 """Labels of the steps from distances to weights. A binding has some of them."""
 SOME = 1e-4

@@ -10,7 +10,6 @@ from ..graph import CutCellGraph
 from ..rig import Skeleton
 from ..runtime.progress import Progress
 from .bones import Bones, Sources
-from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
 from .solver import BoneDistanceSolver
 
 
@@ -66,20 +65,6 @@ def allowed_distances(
         )
         result[np.ix_(np.unique(bones.joint[chosen]), vertices)] = by_node[:, number]
     return result
-
-
-def reasons_not_reached(
-    solver: BoneDistanceSolver, bones: Bones, sources: Sources, joint: NDArray[np.float64]
-) -> NDArray[np.uint8]:
-    """Return why vertices (n,) with distances (j, n) need a fallback."""
-    node = solver.graph.vertex_node
-    fallback = np.where(np.isfinite(joint).any(axis=0), REACHED, UNREACHED).astype(np.uint8)
-    lost = np.flatnonzero(fallback != REACHED)
-    if len(lost):
-        by_any = solver.paths(bones, sources, 1, targets=node[lost])
-        fallback[lost[np.isfinite(by_any).any(axis=0)]] = NOT_ALLOWED
-    fallback[(fallback != NOT_ALLOWED) & ~solver.graph.connected[node]] = UNUSED
-    return fallback
 
 
 def _row_keys(rows: NDArray[np.bool_]) -> NDArray[np.void]:

@@ -7,15 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import MeshError
-from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
 from ..rig.checks import check_choice
-from ..runtime.compiled import no_refcount
-from .any_angle.contraction import Contraction
-from .nearest import NodeGrid
 
 TIE = 1e-9
 """Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
@@ -133,7 +128,8 @@ def bone_samples(
     bones : Bones
         In the unit cube.
     samples : int
-        N, as of `find_sources`.
+        N, points on each bone, both ends included; a single one is in the middle. With
+        connectivity "any" at least one for each lattice cell.
 
     Returns
     -------
@@ -147,61 +143,7 @@ def bone_samples(
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(bones.end - bones.start, axis=1)
         counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
-    points, bone = np.empty((counts.sum(), 3)), np.empty(counts.sum(), np.intp)
-    _put_samples(bones.start, bones.end, counts, points, bone)
-    return points, bone
-
-
-@no_refcount
-def _put_samples(start, end, counts, points, bone):
-    """Place counts[b] points on bone b, both ends included; a single one in the middle."""
-    p = 0
-    for b in range(len(start)):
-        for k in range(counts[b]):
-            share = k / (counts[b] - 1) if counts[b] > 1 else 0.5
-            for axis in range(3):
-                points[p, axis] = start[b, axis] + share * (end[b, axis] - start[b, axis])
-            bone[p] = b
-            p += 1
-
-
-def node_grid(graph: CutCellGraph) -> NodeGrid:
-    """Sort the nodes that have edges into a grid."""
-    if not graph.connected.any():
-        raise MeshError("every triangle of the mesh has collapsed into a point")
-    return NodeGrid(graph.nodes, graph.connected, graph.lattice.resolution)
-
-
-def find_sources(
-    graph: CutCellGraph,
-    bones: Bones,
-    samples: int,
-    grid: NodeGrid,
-    contraction: Contraction | None = None,
-) -> Sources:
-    """Find the graph nodes nearest to evenly spaced points on each bone.
-
-    Parameters
-    ----------
-    graph : CutCellGraph
-    bones : Bones
-        In the unit cube.
-    samples : int
-        N, points on each bone, both ends included; a single one is in the middle. With
-        connectivity "any" at least one for each lattice cell.
-    grid : NodeGrid
-        Of the graph's nodes.
-    contraction : Contraction, optional
-        If given, sources are the representatives of the nearest nodes.
-
-    References
-    ----------
-    Paper section 3.2, algorithm 2.
-    """
-    points, bone = bone_samples(graph, bones, samples)
-    point, nearest = grid.nearest(points, TIE)
-    node = nearest if contraction is None else contraction.representative(nearest)
-    pairs = np.unique(bone[point] * len(graph.nodes) + node)
-    bone_of, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
-    straight = distance_to_segment(graph.nodes[where], bones.start[bone_of], bones.end[bone_of])
-    return Sources(where, bone_of, straight)
+    bone = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]
+    share = np.where(counts > 1, 0.0, 0.5)[bone] + number / np.maximum(counts - 1, 1)[bone]
+    return bones.start[bone] + share[:, None] * (bones.end - bones.start)[bone], bone

@@ -17,9 +17,9 @@ from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
-from .allowed import allowed_distances, check_allowed, is_limit_useful, reasons_not_reached
+from .allowed import allowed_distances, check_allowed, is_limit_useful
 from .bones import Bones, Sources
-from .fallback import REACHED, UNREACHED, UNUSED, straight_to_nearest
+from .fallback import REACHED, straight_to_nearest, why_not_reached
 from .solver import BoneDistanceSolver
 from .tracing.inside import Inside
 
@@ -80,7 +80,7 @@ class BoneDistances(Summarized):
             "vertices": len(self.fallback),
             "unreached_vertices": int(np.count_nonzero(self.fallback)),
             "bones": len(self.bones.joint),
-            "sources": len(self.source_node),
+            "sources": len(self.sources.node),
             "nearest_joints": self.nearest_joints or "all",
         }
 
@@ -128,11 +128,6 @@ class BoneDistances(Summarized):
     def inside(self) -> Inside:
         """The test for straight segments inside the body."""
         return Inside(self.graph, self.solver.contraction)
-
-    @property
-    def source_node(self) -> NDArray[np.int32]:
-        """Nodes where paths begin, shape (s,)."""
-        return self.sources.node
 
     def field(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every node of the graph, shape (N,).
@@ -253,32 +248,32 @@ def bone_distances(
     progress("distances", 0.0)
     if allowed is not None:
         check_allowed(graph, skeleton, allowed)
-    bones, aimed = solver.bones(skeleton, method.leaf, allowed)
-    sources = solver.sources(bones, method.samples)
-    bones, sources = solver.aim(bones, sources, aimed, method.samples, progress)
-    node = solver.targets if allowed is None else graph.vertex_node
+        allowed = None if allowed.all() else allowed
+    bones, sources = solver.place(skeleton, method, allowed, progress)
     if allowed is None:
+        node = solver.targets
         by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
-        joint, fallback = _per_joint(solver, bones, len(skeleton.joints), by_node)
+        joint = _per_joint(by_node, bones, len(skeleton.joints))
     else:  # per vertex, as those at one place may differ
+        node = graph.vertex_node
         if nearest_joints is not None and not is_limit_useful(allowed, nearest_joints, bones):
             nearest_joints = None
         joint = allowed_distances(solver, bones, sources, nearest_joints, within, allowed, progress)
-        fallback = reasons_not_reached(solver, bones, sources, joint)
+    fallback = why_not_reached(solver, bones, sources, joint, node, allowed)
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
-        joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
-    shared = nearest_joints, bones, sources
-    fingerprint = {**graph.fingerprint, **distance_fingerprint(skeleton, method, allowed)}
+        joint[:, lost] = _per_joint(_least(straight, bones), bones, len(joint))
+    of_vertices = None if allowed is None else joint
     if allowed is None:
-        by_place = fallback[graph.vertex_node]
-        distances = BoneDistances(joint, None, *shared, by_place, solver, skeleton)
+        fallback = fallback[graph.vertex_node]
     else:
-        first = np.unique(node, return_index=True)[1]
-        of_skeleton = solver, skeleton, allowed
-        distances = BoneDistances(joint[:, first], joint, *shared, fallback, *of_skeleton)
+        joint = joint[:, np.unique(node, return_index=True)[1]]
+    distances = BoneDistances(
+        joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
+    )
+    fingerprint = {**graph.fingerprint, **distance_fingerprint(skeleton, method, allowed)}
     return distances.identified(fingerprint if graph.fingerprint else {})
 
 
@@ -286,23 +281,18 @@ def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int)
     """Compute the distances of given bones to each vertex along a graph, without a fallback."""
     solver = BoneDistanceSolver(graph)
     sources = solver.sources(bones, samples)
-    at_welded, fallback = _per_joint(solver, bones, joints, solver.paths(bones, sources))
-    fallback = fallback[graph.vertex_node]
-    return BoneDistances(at_welded, None, None, bones, sources, fallback, solver)
+    joint = _per_joint(solver.paths(bones, sources), bones, joints)
+    fallback = why_not_reached(solver, bones, sources, joint, solver.targets, None)
+    return BoneDistances(joint, None, None, bones, sources, fallback[graph.vertex_node], solver)
 
 
-def _per_joint(
-    solver: BoneDistanceSolver, bones: Bones, joints: int, by_node: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
-    """Return distances (j, k) of all joints, and why vertices (k,) need a fallback."""
-    reached = np.isfinite(by_node.min(axis=0))
-    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
-    fallback[~solver.graph.connected[solver.targets]] = UNUSED
-    with_bones, at_welded = np.unique(bones.joint), by_node
-    if len(with_bones) < joints:
-        at_welded = np.full((joints, by_node.shape[1]), np.inf)
-        at_welded[with_bones] = by_node
-    return at_welded, fallback
+def _per_joint(distance: NDArray[np.float64], bones: Bones, joints: int) -> NDArray[np.float64]:
+    """Return distances of all joints (j, p), from those of joints that have bones."""
+    if len(distance) == joints:
+        return distance
+    result = np.full((joints, distance.shape[1]), np.inf)
+    result[np.unique(bones.joint)] = distance
+    return result
 
 
 def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:

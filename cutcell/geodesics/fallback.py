@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.segments import distance_to_segment
-from .bones import Bones
+from .bones import Bones, Sources
+from .solver import BoneDistanceSolver
 
 REACHED, UNUSED, UNREACHED, NOT_ALLOWED = range(4)
 
@@ -17,6 +18,25 @@ FALLBACK_REASONS = (
     "its file cannot store weights of the joints that reach the vertex",
 )
 """What each value of `BoneDistances.fallback` means."""
+
+
+def why_not_reached(
+    solver: BoneDistanceSolver,
+    bones: Bones,
+    sources: Sources,
+    distance: NDArray[np.float64],
+    node: NDArray[np.integer],
+    allowed: NDArray[np.bool_] | None,
+) -> NDArray[np.uint8]:
+    """Return why nodes (p,) with distances (j, p) of their joints need a fallback, (p,)."""
+    reached = np.isfinite(distance.min(axis=0))
+    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
+    fallback[~solver.graph.connected[node]] = UNUSED
+    lost = np.flatnonzero(fallback == UNREACHED)
+    if allowed is not None and len(lost):
+        by_any = solver.paths(bones, sources, 1, targets=node[lost])
+        fallback[lost[np.isfinite(by_any).any(axis=0)]] = NOT_ALLOWED
+    return fallback
 
 
 def straight_to_nearest(

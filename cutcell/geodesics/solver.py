@@ -1,4 +1,4 @@
-"""A graph prepared for distances: its node grid, its contraction, and paths along it."""
+"""Distances along one graph: bones and sources, then shortest paths (paper, algorithm 2)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
+from ..method import Method
 from ..rig import Skeleton
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import submit
 from .any_angle.contraction import Contraction, contract
 from .any_angle.theta_star import any_angle_paths, least_distances
 from .bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
-from .bones import Bones, Sources, bone_segments, find_sources, node_grid
-from .nearest import NodeGrid
+from .bones import TIE, Bones, Sources, bone_samples, bone_segments
+from .nearest import NodeTree
 from .shortest_paths import shortest_paths
 
 
@@ -29,8 +31,8 @@ class BoneDistanceSolver:
     Attributes
     ----------
     graph : CutCellGraph
-    grid : NodeGrid
-        Finds the nodes nearest to points.
+    tree : NodeTree
+        Of the nodes that have edges.
     contraction : Contraction or None
         The graph with fewer nodes, with connectivity "any".
     targets : array, shape (k,), int32
@@ -41,7 +43,7 @@ class BoneDistanceSolver:
         # Another thread contracts the graph while bones are fitted.
         self._contract = submit(lambda: contract(graph)) if graph.connectivity == "any" else None
         self.graph = graph
-        self.grid: NodeGrid = node_grid(graph)
+        self.tree = NodeTree.of(graph)
         self.targets = np.arange(graph.first_point, dtype=np.int32)
 
     @cached_property
@@ -49,43 +51,53 @@ class BoneDistanceSolver:
         """The graph with fewer nodes, with connectivity "any"."""
         return self._contract() if self._contract else None
 
-    def bones(
-        self, skeleton: Skeleton, leaf: str, allowed: NDArray[np.bool_] | None = None
-    ) -> tuple[Bones, NDArray[np.bool_]]:
-        """Place bones in the unit cube; also return which leaf bones are yet to be aimed, (b,).
+    def place(
+        self,
+        skeleton: Skeleton,
+        method: Method,
+        allowed: NDArray[np.bool_] | None = None,
+        progress: Progress = silent,
+    ) -> tuple[Bones, Sources]:
+        """Place bones in the unit cube, and find the nodes where their distances begin.
 
         Shapes: allowed (n, j), see `Rig.allowed`.
         """
+        bones, aimed = self.bones(skeleton, method.leaf, allowed)
+        sources = self.sources(bones, method.samples)
+        if aimed.any():  # these leaf bones end in the middle of the skin that is nearest to them
+            distance, nearest = self._leaf_distances(bones, sources, aimed, progress)
+            bones = aim_leaf_bones(self.graph, bones, aimed, distance, nearest)
+            sources = sources.replaced(aimed, self.sources(bones.subset(aimed), method.samples))
+        return bones, sources
+
+    def bones(
+        self, skeleton: Skeleton, leaf: str, allowed: NDArray[np.bool_] | None = None
+    ) -> tuple[Bones, NDArray[np.bool_]]:
+        """Return bones in the unit cube, and (b,) whether `place` aims each at its skin."""
         if leaf == "fit":
-            return fit_bones(self.graph, skeleton, self.grid, allowed)
+            return fit_bones(self.graph, skeleton, self.tree, allowed)
         bones, to_unit = bone_segments(skeleton, leaf), self.graph.lattice.to_unit
         bones = Bones(to_unit(bones.start), to_unit(bones.end), bones.joint)
         return bones, np.zeros(len(bones.joint), np.bool_)
 
     def sources(self, bones: Bones, samples: int) -> Sources:
-        """Find the nodes where the distances of bones begin."""
-        return find_sources(self.graph, bones, samples, self.grid, self.contraction)
+        """Find the nodes nearest to evenly spaced points on each bone.
 
-    def aim(
-        self,
-        bones: Bones,
-        sources: Sources,
-        aimed: NDArray[np.bool_],
-        samples: int,
-        progress: Progress = silent,
-    ) -> tuple[Bones, Sources]:
-        """Aim leaf bones, `aimed` (b,), at the middle of their skin; find their sources again."""
-        if not aimed.any():
-            return bones, sources
-        bones = aim_leaf_bones(
-            self.graph, bones, aimed, *self._reach(bones, sources, aimed, progress)
-        )
-        return bones, sources.replaced(aimed, self.sources(bones.subset(aimed), samples))
+        With connectivity "any" they are the representatives of the nearest nodes.
+        """
+        points, bone = bone_samples(self.graph, bones, samples)
+        point, node = self.tree.nearest(points, TIE)
+        if self.contraction is not None:
+            node = self.contraction.representative(node)
+        pairs = np.unique(bone[point] * len(self.graph.nodes) + node)
+        bone, node = (x.astype(np.int32) for x in np.divmod(pairs, len(self.graph.nodes)))
+        ends = bones.start[bone], bones.end[bone]
+        return Sources(node, bone, distance_to_segment(self.graph.nodes[node], *ends))
 
-    def _reach(
+    def _leaf_distances(
         self, bones: Bones, sources: Sources, aimed: NDArray[np.bool_], progress: Progress
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Compute the distances that `aim_leaf_bones` takes."""
+        """Compute distances of joints with aimed bones (t, k), and of the nearest joint (k,)."""
         if self.contraction is None:
             every = self.paths(bones, sources, progress=progress)
             return every[np.isin(np.unique(bones.joint), bones.joint[aimed])], every.min(axis=0)

@@ -43,6 +43,7 @@ def distance_fingerprint(
 ) -> dict[str, Any]:
     """Return what distances depend on besides their graph."""
     options = {"samples": method.samples, "leaf": method.leaf}
+    allowed = None if allowed is None or allowed.all() else allowed
     return skeleton_fingerprint(skeleton) | options | {"permitted joints": _digest(allowed)}
 
 

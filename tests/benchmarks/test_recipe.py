@@ -57,7 +57,7 @@ def test_the_same_distances_from_the_same_sources():
     ours = bone_distances(graph, skeleton)
     count = len(ours.bones.joint)
     augmented = recipe.with_bones(
-        graph.csr(), ours.sources.bone, ours.source_node, ours.sources.distance, count
+        graph.csr(), ours.sources.bone, ours.sources.node, ours.sources.distance, count
     )
     theirs = recipe.scipy_distances(augmented, count, graph.vertex_node)
     np.testing.assert_allclose(ours.joint, theirs, rtol=1e-6, atol=1e-9)

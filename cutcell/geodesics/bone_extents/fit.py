@@ -19,7 +19,7 @@ from ...graph import CutCellGraph
 from ...rig import Skeleton
 from ...runtime.compiled import no_refcount
 from ..bones import Bones
-from ..nearest import NodeGrid
+from ..nearest import NodeTree
 from .chains import SAME_PLACE, Chains, find_chains
 from .probe import BodyProbe
 from .skins import characters, share_a_skin
@@ -43,14 +43,14 @@ near there. Shorter ones have hardly any direction."""
 def fit_bones(
     graph: CutCellGraph,
     skeleton: Skeleton,
-    grid: NodeGrid,
+    tree: NodeTree,
     allowed: NDArray[np.bool_] | None = None,
 ) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight, of each character by itself.
 
     Shapes: allowed (n, j), see `Rig.allowed`; returns aimed (b,).
     """
-    probe = BodyProbe(graph, grid)
+    probe = BodyProbe(graph, tree)
     together = share_a_skin(allowed, len(skeleton.joints))
     parts = []
     for joints, own in characters(skeleton, together):

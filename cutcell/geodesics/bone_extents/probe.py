@@ -11,7 +11,7 @@ from ...geometry.vectors import segment_fraction
 from ...graph import CutCellGraph
 from ...graph.interior import OUTSIDE, point_number
 from ...runtime.compiled import compiled
-from ..nearest import NodeGrid
+from ..nearest import NodeTree
 
 STEP = 0.25
 """Lattice cells between sample points on a ray."""
@@ -32,13 +32,13 @@ class BodyProbe:
     ----------
     graph : CutCellGraph
         Points are in its unit cube.
-    grid : NodeGrid
+    tree : NodeTree
         Of its nodes.
     """
 
-    def __init__(self, graph: CutCellGraph, grid: NodeGrid) -> None:
+    def __init__(self, graph: CutCellGraph, tree: NodeTree) -> None:
         self._graph = graph
-        self._grid = grid
+        self._tree = tree
         self.resolution = graph.lattice.resolution
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -50,7 +50,7 @@ class BodyProbe:
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return whether the body is in or beside the lattice cell of each point (..., 3)."""
         points = np.asarray(points, np.float64)
-        return self._grid.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
+        return self._tree.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
 
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False

@@ -43,7 +43,7 @@ def test_distances_equal_the_slow_ones(name, leaf, connectivity):
     for b in range(len(distances.bones.joint)):
         mine = distances.sources.bone == b
         sources = dict(
-            zip(distances.source_node[mine], distances.sources.distance[mine], strict=True)
+            zip(distances.sources.node[mine], distances.sources.distance[mine], strict=True)
         )
         slow = naive.shortest_paths(len(graph.nodes), graph.edges, graph.lengths, sources)
         reached = distances.fallback == REACHED
@@ -65,7 +65,7 @@ def test_distances_equal_scipy_on_a_large_graph():
         # One node more, from which every source is as far as its bone.
         matrix = graph.csr().tocoo()
         row = np.concatenate([matrix.row, np.full(mine.sum(), count)])
-        col = np.concatenate([matrix.col, distances.source_node[mine]])
+        col = np.concatenate([matrix.col, distances.sources.node[mine]])
         data = np.concatenate([matrix.data, distances.sources.distance[mine]])
         linked = csr_array((data, (row, col)), shape=(count + 1, count + 1))
         expected = dijkstra(linked, indices=count)[graph.vertex_node]
@@ -82,9 +82,9 @@ def test_sources_are_the_nearest_nodes():
         apart = cdist(points, graph.nodes)
         nearest = set(np.nonzero(apart <= apart.min(axis=1, keepdims=True) * (1 + 1e-9))[1])
         mine = distances.sources.bone == b
-        assert set(distances.source_node[mine]) == nearest
+        assert set(distances.sources.node[mine]) == nearest
         straight = distance_to_segment(
-            graph.nodes[distances.source_node[mine]], bones.start[b], bones.end[b]
+            graph.nodes[distances.sources.node[mine]], bones.start[b], bones.end[b]
         )
         np.testing.assert_allclose(distances.sources.distance[mine], straight)
 
@@ -146,7 +146,7 @@ def test_unused_vertices_fall_back_and_never_become_sources():
     graph = build_graph(TriangleMesh(vertices, faces), 4)
     distances = bone_distances(graph, ARM)
     assert distances.fallback[-1] == UNUSED
-    assert graph.vertex_node[-1] not in distances.source_node
+    assert graph.vertex_node[-1] not in distances.sources.node
     assert np.isfinite(distances.joint[:, -1]).all()
 
 
