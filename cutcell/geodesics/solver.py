@@ -81,18 +81,8 @@ class BoneDistanceSolver:
         return bones, np.zeros(len(bones.joint), np.bool_)
 
     def sources(self, bones: Bones, samples: int) -> Sources:
-        """Find the nodes nearest to evenly spaced points on each bone.
-
-        With connectivity "any" they are the representatives of the nearest nodes.
-        """
-        points, bone = bone_samples(self.graph, bones, samples)
-        point, node = self.tree.nearest(points, TIE)
-        if self.contraction is not None:
-            node = self.contraction.representative(node)
-        pairs = np.unique(bone[point] * len(self.graph.nodes) + node)
-        bone, node = (x.astype(np.int32) for x in np.divmod(pairs, len(self.graph.nodes)))
-        ends = bones.start[bone], bones.end[bone]
-        return Sources(node, bone, distance_to_segment(self.graph.nodes[node], *ends))
+        """Find the nodes where the distances of bones begin."""
+        return find_sources(self.graph, bones, samples, self.tree, self.contraction)
 
     def _leaf_distances(
         self, bones: Bones, sources: Sources, aimed: NDArray[np.bool_], progress: Progress
@@ -147,3 +137,24 @@ class BoneDistanceSolver:
         first = order[np.diff(pairs, prepend=-1).any(axis=0)]
         of_joints = Sources(sources.node[first], owner[first], sources.distance[first])
         return shortest_paths(self.graph, of_joints, len(joints), targets, progress)
+
+
+def find_sources(
+    graph: CutCellGraph,
+    bones: Bones,
+    samples: int,
+    tree: NodeTree,
+    contraction: Contraction | None = None,
+) -> Sources:
+    """Find the nodes nearest to evenly spaced points on each bone (paper, algorithm 2).
+
+    In a contracted graph, sources are the representatives of the nearest nodes.
+    """
+    points, bone = bone_samples(graph, bones, samples)
+    point, node = tree.nearest(points, TIE)
+    if contraction is not None:
+        node = contraction.representative(node)
+    pairs = np.unique(bone[point] * len(graph.nodes) + node)
+    bone, node = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
+    straight = distance_to_segment(graph.nodes[node], bones.start[bone], bones.end[bone])
+    return Sources(node, bone, straight)

@@ -17,6 +17,7 @@ METHODS = {
     "paper": cutcell.PAPER.with_options(resolution=24),
     "few": cutcell.PAPER.with_options(resolution=24, max_influences=2),
 }
+RIGS = ["kaykit_knight", "khronos_Fox", "quaternius_deer", "quaternius_trex", "quaternius_wizard"]
 VERTICES = np.linspace(0, len(RIG.mesh.vertices) - 1, 6).astype(int).tolist()
 
 
@@ -100,3 +101,22 @@ def test_corrections_are_explained_as_they_are_bound(method):
             if share.factors:
                 product = share.distance * np.prod(list(share.factors.values()))
                 assert share.effective == pytest.approx(product)
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_the_last_step_of_real_characters_is_what_bind_computes(name, rigs):
+    rig = cutcell.load(rigs[0].with_stem(name))
+    used = np.flatnonzero(rig.skeleton.deform)
+    corrections = cutcell.Corrections(
+        joints={rig.skeleton.names[used[0]]: cutcell.JointCorrection(locked=True)},
+        parts={0: cutcell.PartCorrection("glued", rig.skeleton.names[used[-1]])},
+    )
+    for method, given in ((cutcell.ANIMATION, None), (cutcell.PAPER, corrections)):
+        options = {"method": method, "corrections": given}
+        weights = cutcell.bind(rig, 16, **options).weights
+        for vertex in (0, len(rig.mesh.vertices) // 2):
+            shares = cutcell.explain(rig, vertex, 16, **options).joints
+            listed = [share.joint for share in shares]
+            last = [list(share.steps.values())[-1] for share in shares]
+            np.testing.assert_array_equal(last, weights[vertex, listed])
+            assert weights[vertex].sum() - sum(last) < 1e-3  # what is left out is small

@@ -7,10 +7,11 @@ import pytest
 import trimesh
 
 from cutcell import ParameterError, Skeleton, TriangleMesh, load
-from cutcell.geodesics import BoneDistanceSolver
 from cutcell.geodesics.any_angle.contraction import _sorted_by_place, contract
 from cutcell.geodesics.any_angle.theta_star import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.any_angle.wavefront import partition_sources
+from cutcell.geodesics.nearest import NodeTree
+from cutcell.geodesics.solver import find_sources
 from cutcell.geometry.segments import distance_to_segment
 from cutcell_assets import demo_path
 from tests import meshes
@@ -174,17 +175,11 @@ def test_with_three_joints_for_certain_the_fourth_is_hardly_ever_missed():
     assert (found <= fourth * 1.01).mean() > 0.98
 
 
-def sources_of(graph, bones, contraction):
-    solver = BoneDistanceSolver(graph)
-    solver.contraction = contraction
-    return solver.sources(bones, 5)
-
-
 def test_some_joints_are_measured_where_no_other_is_much_nearer():
     graph, skeleton = chain_in_the_l()
     bones = bone_distances(graph, skeleton).bones
     contraction = contract(graph)
-    sources = sources_of(graph, bones, contraction)
+    sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
     nodes = contraction.node
     every = any_angle_paths(graph, contraction, sources, bones, nodes)
     least = least_distances(graph, contraction, sources, bones)
@@ -214,7 +209,7 @@ def test_distances_do_not_depend_on_how_vertices_are_numbered():
     nodes = np.arange(graph.first_point, dtype=np.int32)
 
     def measured(contraction):
-        sources = sources_of(graph, bones, contraction)
+        sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
         least = least_distances(graph, contraction, sources, bones)[contraction.number]
         few = any_angle_paths(graph, contraction, sources, bones, nodes, nearest=3, within=6)
         return least, few
