@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled
-from ..runtime.threads import in_threads, parts
+from ..runtime.threads import in_threads, parts, threads
+
+A_PART = 100_000
+"""Weights of one part of the work: they fit into the cache."""
 
 
 def paper_kernel(
@@ -19,47 +21,17 @@ def paper_kernel(
     Shapes: distance (j, n); returns (n, j).
     """
     weights = np.empty(distance.shape[::-1])
-    in_threads(
-        lambda part: _paper_kernel(distance, diagonal, alpha, weights, part.start, part.stop),
-        parts(len(weights)),
-    )
+
+    def weigh(part: slice) -> None:
+        x = distance[:, part] / diagonal
+        is_far = np.isinf(x)
+        x[is_far] = 0.0
+        steepness = (1 - alpha) * x + alpha * x * x
+        steepness[is_far] = np.inf
+        # Relative to the nearest joint nothing overflows, however small the distances are.
+        least = np.broadcast_to(steepness.min(axis=0), x.shape)
+        weight = np.divide(least, steepness, out=np.ones_like(x), where=steepness > 0) ** 2
+        weights[part] = (weight / weight.sum(axis=0)).T
+
+    in_threads(weigh, parts(len(weights), threads() + weights.size // A_PART))
     return weights
-
-
-BLOCK_ROWS = 64
-"""Vertices at a time: distances are stored by joint, and a block of rows fits into the cache."""
-
-
-@compiled
-def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
-    for first in range(begin, stop, BLOCK_ROWS):
-        _kernel_rows(
-            distance, diagonal, alpha, first, weights[first : min(first + BLOCK_ROWS, stop)]
-        )
-
-
-@compiled
-def _kernel_rows(distance, diagonal, alpha, first, rows):
-    for j in range(len(distance)):
-        for v in range(len(rows)):
-            x = distance[j, first + v] / diagonal
-            rows[v, j] = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
-    for v in range(len(rows)):
-        _normalise(rows[v])
-
-
-@compiled
-def _normalise(row):
-    least = np.inf
-    for steepness in row:
-        least = min(least, steepness)
-    # Relative to the nearest joint nothing overflows, however small the distances are.
-    total = 0.0
-    for j, steepness in enumerate(row):
-        if steepness == np.inf:
-            row[j] = 0.0
-            continue
-        ratio = least / steepness if steepness > 0 else 1.0
-        row[j] = ratio * ratio
-        total += ratio * ratio
-    row /= total
