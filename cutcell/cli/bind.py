@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import ParameterError
-from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .console import for_people, print_result, progress_bars
 from .options import (
     Accessories,
     CorrectionsFile,
@@ -158,12 +158,7 @@ def bind(
         "seconds": {name: round(value, 4) for name, value in binding.seconds.items()},
         "warnings": warnings,
     }
-    if not quiet:
-        print_warnings(warnings)
-    if json:
-        print_json(document)
-    elif not quiet:
-        print_table(f"{rig.name} -> {out}", report_rows(document))
+    print_result(document, f"{rig.name} -> {out}", report_rows(document), json, quiet)
 
 
 def _with_template(

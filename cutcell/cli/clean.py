@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .console import for_people, print_result, progress_bars
 from .options import Json, Quiet, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
@@ -79,12 +79,7 @@ def clean(
         ],
         "warnings": warnings,
     }
-    if not quiet:
-        print_warnings(warnings)
-    if json:
-        print_json(document)
-    elif not quiet:
-        print_table(f"{rig.name} -> {out}", _rows(document, cleaned))
+    print_result(document, f"{rig.name} -> {out}", _rows(document, cleaned), json, quiet)
 
 
 def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str]]:

@@ -120,6 +120,22 @@ def progress_bars(quiet: bool = False) -> Iterator[Progress]:
         yield report
 
 
+def print_result(
+    document: Mapping[str, Any],
+    title: str,
+    rows: Iterable[tuple[str, str]],
+    json: bool,
+    quiet: bool = False,
+) -> None:
+    """Print the warnings of a document, and the document as JSON or as a table."""
+    if not quiet:
+        print_warnings(document["warnings"])
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_table(title, rows)
+
+
 def print_json(document: Mapping[str, Any]) -> None:
     """Print one JSON document, and nothing else, on standard output."""
     text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import asdict
 from typing import Any
 
-from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .console import for_people, print_result, progress_bars
 from .options import (
     Deform,
     Fresh,
@@ -47,29 +46,21 @@ def graph(
     Counts nodes and edges (of the mesh, inside, on the surface), connected components,
     and the share of vertices that no bone reaches through the graph.
     """
-    from ..geodesics import bone_distances
-    from ..graph import build_graph
+    from ..binding import binding_steps
     from ..io import load
     from ..io.files import naming
     from ..metrics import summary
     from ..rig.deform_joints import choose_deform
+    from ..weights.context import Context, run
 
     how = chosen_method(options)
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
-    seconds: dict[str, float] = {}
-    start = time.perf_counter()
+    steps = binding_steps(loaded, how)[: 2 if len(loaded.skeleton.joints) else 1]
     with progress_bars(quiet=json) as progress:
-        built = build_graph(loaded.mesh, method=how, progress=progress)
-        seconds["graph"] = round(time.perf_counter() - start, 4)
-        distances = None
-        if len(loaded.skeleton.joints):
-            start = time.perf_counter()
-            distances = bone_distances(
-                built, loaded.skeleton, method=how, allowed=loaded.allowed, progress=progress
-            )
-            seconds["distances"] = round(time.perf_counter() - start, 4)
+        context = run(steps, Context(how, progress=progress))
+    built, distances = context.graph, context.distances
     document = {
         "input": str(rig),
         "method": options["method"],
@@ -79,11 +70,7 @@ def graph(
         "skeleton": distances and summary.summarize_skeleton(loaded.skeleton),
         "graph": summary.summarize_graph(built),
         "fallback": distances and summary.summarize_fallback(distances),
-        "seconds": seconds,
+        "seconds": {name: round(value, 4) for name, value in context.seconds.items()},
         "warnings": list(loaded.warnings),
     }
-    if json:
-        print_json(document)
-    else:
-        print_warnings(loaded.warnings)
-        print_table(rig.name, report_rows(document))
+    print_result(document, rig.name, report_rows(document), json)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .console import for_people, print_json, print_table, print_warnings
+from .console import for_people, print_result
 from .options import Deform, Fresh, Json, NoDeform, RigFile, SkeletonFile
 
 EPILOG = """Examples:
@@ -48,12 +48,7 @@ def joints(
             reason = "by the file" if by_weights else "chosen"
         parent = int(chosen.skeleton.parents[j])
         rows.append({"name": name, "parent": parent, "deform": carries, "reason": reason})
-    if json:
-        print_json({"input": str(rig), "joints": rows, "warnings": list(loaded.warnings)})
-        return
-    print_warnings(loaded.warnings)
+    document = {"input": str(rig), "joints": rows, "warnings": list(loaded.warnings)}
+    cells = [(row["name"], f"{'yes' if row['deform'] else 'no'} · {row['reason']}") for row in rows]
     count = int(chosen.skeleton.deform.sum())
-    print_table(
-        f"{rig.name}: {count} of {len(rows)} joints deform",
-        [(row["name"], f"{'yes' if row['deform'] else 'no'} · {row['reason']}") for row in rows],
-    )
+    print_result(document, f"{rig.name}: {count} of {len(rows)} joints deform", cells, json)

@@ -18,6 +18,18 @@ JOINTS = "Deforming joints"
 TOUCH = "Refinement"
 FILES = "Files and output"
 
+
+def _option(panel: str, flags: str, metavar: str, text: str, show_default: bool = True) -> Any:
+    """Return an option for `Annotated`."""
+    return typer.Option(
+        *flags.split(),
+        metavar=metavar or None,
+        help=text,
+        show_default=show_default,
+        rich_help_panel=panel,
+    )
+
+
 RigFile = Annotated[
     Path,
     typer.Argument(
@@ -29,38 +41,76 @@ RigFile = Annotated[
 ]
 SkeletonFile = Annotated[
     Path | None,
-    typer.Option(
-        "--skeleton",
-        metavar="FILE",
-        help="File with the skeleton of a mesh that has no skin: .json, .glb, .gltf, .vrm, .fbx,"
-        " .usd, RigNet's .txt or .npz. Default: the .json of the same name next to the mesh.",
-        rich_help_panel=FILES,
+    _option(
+        FILES, "--skeleton", "FILE",
+        "File with the skeleton of a mesh that has no skin: .json, .glb, .gltf, .vrm, .fbx, .usd,"
+        " RigNet's .txt or .npz. Default: the .json of the same name next to the mesh.",
     ),
-]
+]  # fmt: skip
 Accessories = Annotated[
     bool,
-    typer.Option(
-        "--accessories",
-        help="Also bind meshes that have no skin, such as a sword that hangs on a joint.",
-        rich_help_panel=FILES,
+    _option(
+        FILES, "--accessories", "",
+        "Also bind meshes that have no skin, such as a sword that hangs on a joint.",
     ),
-]
+]  # fmt: skip
 TemplateName = Annotated[
     str | None,
-    typer.Option(
-        "--template",
-        metavar="T",
-        help="Fit a skeleton into a mesh that has none: biped, quadruped, hand, snake or chain.",
-        rich_help_panel=FILES,
+    _option(
+        FILES, "--template", "T",
+        "Fit a skeleton into a mesh that has none: biped, quadruped, hand, snake or chain.",
+    ),
+]  # fmt: skip
+Json = Annotated[bool, _option(FILES, "--json", "", "Print one JSON document.")]
+Quiet = Annotated[bool, _option(FILES, "--quiet -q", "", "No bars, no table, no warnings.")]
+Deform = Annotated[
+    list[str] | None,
+    _option(
+        JOINTS, "--deform", "JOINT",
+        "Joint that may carry weight although the file or the detection excludes it; * matches"
+        " any letters. May be given several times.",
+    ),
+]  # fmt: skip
+NoDeform = Annotated[
+    list[str] | None,
+    _option(
+        JOINTS, "--no-deform", "JOINT",
+        "Joint that carries no weight, such as '*_IK'. May be given several times.",
+    ),
+]  # fmt: skip
+Fresh = Annotated[
+    bool,
+    _option(
+        JOINTS, "--fresh", "",
+        "Ignore the file's weights and detect deforming joints from names and positions."
+        " `cutcell joints` lists the result.",
+    ),
+]  # fmt: skip
+CorrectionsFile = Annotated[
+    Path | None,
+    _option(
+        TOUCH, "--corrections", "FILE",
+        "Corrections (.json): joints moved, excluded, locked or with another influence "
+        "radius; parts bound to joints; weights of single vertices.",
+    ),
+]  # fmt: skip
+Smoothing = Annotated[
+    int, _option(TOUCH, "--smoothing", "N", "Average the weights along mesh edges N times.")
+]
+Symmetric = Annotated[
+    bool,
+    _option(
+        TOUCH, "--symmetric", "", "Make left and right weights equal where the mesh is symmetric."
     ),
 ]
-Json = Annotated[
-    bool, typer.Option("--json", help="Print one JSON document.", rich_help_panel=FILES)
-]
-Quiet = Annotated[
-    bool,
-    typer.Option("--quiet", "-q", help="No bars, no table, no warnings.", rich_help_panel=FILES),
-]
+Lock = Annotated[
+    list[str] | None,
+    _option(
+        TOUCH, "--lock", "JOINT",
+        "Joint that keeps its weights of the file; the others share the rest. May be given"
+        " several times.",
+    ),
+]  # fmt: skip
 
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
     "method": (
@@ -122,16 +172,10 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
 
 
 def _annotated(
-    kind: Any, default: Any, flags: str, metavar: str, text: str, section: str = METHOD
+    kind: Any, default: Any, flags: str, metavar: str, text: str, panel: str = METHOD
 ) -> Any:
-    option = typer.Option(
-        *flags.split(),
-        metavar=metavar or None,
-        help=text,
-        show_default=default is not None and default != "",
-        rich_help_panel=section,
-    )
-    return Annotated[kind, option]
+    """Return the annotation of an option, see `METHOD_OPTIONS`."""
+    return Annotated[kind, _option(panel, flags, metavar, text, default not in (None, ""))]
 
 
 if TYPE_CHECKING:
@@ -170,73 +214,6 @@ def with_options(
 def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Replace a command's parameter `options` by options of the method; all when none is named."""
     return with_options("options", {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS})
-
-
-Deform = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--deform",
-        metavar="JOINT",
-        help="Joint that may carry weight although the file or the detection excludes it; * matches"
-        " any letters. May be given several times.",
-        rich_help_panel=JOINTS,
-    ),
-]
-NoDeform = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--no-deform",
-        metavar="JOINT",
-        help="Joint that carries no weight, such as '*_IK'. May be given several times.",
-        rich_help_panel=JOINTS,
-    ),
-]
-Fresh = Annotated[
-    bool,
-    typer.Option(
-        "--fresh",
-        help="Ignore the file's weights and detect deforming joints from names and positions."
-        " `cutcell joints` lists the result.",
-        rich_help_panel=JOINTS,
-    ),
-]
-CorrectionsFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--corrections",
-        metavar="FILE",
-        help="Corrections (.json): joints moved, excluded, locked or with another influence "
-        "radius; parts bound to joints; weights of single vertices.",
-        rich_help_panel=TOUCH,
-    ),
-]
-Smoothing = Annotated[
-    int,
-    typer.Option(
-        "--smoothing",
-        metavar="N",
-        help="Average the weights along mesh edges N times.",
-        rich_help_panel=TOUCH,
-    ),
-]
-Symmetric = Annotated[
-    bool,
-    typer.Option(
-        "--symmetric",
-        help="Make left and right weights equal where the mesh is symmetric.",
-        rich_help_panel=TOUCH,
-    ),
-]
-Lock = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--lock",
-        metavar="JOINT",
-        help="Joint that keeps its weights of the file; the others share the rest. May be given"
-        " several times.",
-        rich_help_panel=TOUCH,
-    ),
-]
 
 
 def chosen_method(options: Mapping[str, Any]) -> Method:

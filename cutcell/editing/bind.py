@@ -134,6 +134,7 @@ def bind_steps(
     """
 
     def adjust(context: Context) -> Adjustments | None:
+        context.report(0.0)
         return adjustments_of(rig, context.graph, corrections)
 
     nearest, within = joints_measured(corrections, method)

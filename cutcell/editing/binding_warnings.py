@@ -37,7 +37,6 @@ def binding_warnings(
         *_inferred_bones(rig, distances),
         *_weightless(rig, weights),
         *_blocked_by_locks(rig, distances.graph, corrections, is_locked),
-        *_against_locks(rig, corrections, is_locked),
     )
 
 
@@ -85,7 +84,7 @@ def _weightless(rig: Rig, weights: NDArray[np.float64]) -> Iterator[str]:
 def _blocked_by_locks(
     rig: Rig, graph: CutCellGraph, corrections: Corrections, is_locked: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Report parts whose corrections have no effect, as locked joints keep weight there."""
+    """Report corrections without effect where locked joints keep the file's weights."""
     if rig.weights is None or not is_locked.any():
         return
     for vertex, part in corrections.parts.items():
@@ -103,26 +102,18 @@ def _blocked_by_locks(
                 f"the part of vertex {vertex} {binding}, but these joints are locked and keep the "
                 f"file's weights there: {_names(rig, keeping)}"
             )
-
-
-def _against_locks(
-    rig: Rig, corrections: Corrections, is_locked: NDArray[np.bool_]
-) -> Iterator[str]:
-    """Report locked joints that keep the file's weights where vertices are set by hand."""
-    if rig.weights is None or not is_locked.any() or not corrections.vertices:
-        return
     column = {rig.skeleton.names[j]: j for j in np.flatnonzero(is_locked)}
     overrides = np.zeros((len(corrections.vertices), len(is_locked)))
     for row, weights in enumerate(corrections.vertices.values()):
         for name in weights.keys() & column.keys():
             overrides[row, column[name]] = weights[name]
     differs = np.abs(overrides - rig.weights[list(corrections.vertices)]) > SAME
-    changed = is_locked & differs.any(axis=0)
-    if changed.any():
-        count = int(differs[:, changed].any(axis=1).sum())
+    keeping = is_locked & differs.any(axis=0)
+    if keeping.any():
+        count = int(differs[:, keeping].any(axis=1).sum())
         yield (
             f"{count} vertices are set by hand, but these joints are locked and keep the file's "
-            f"weights there: {_names(rig, changed)}"
+            f"weights there: {_names(rig, keeping)}"
         )
 
 

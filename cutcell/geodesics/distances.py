@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Unpack
@@ -113,16 +114,18 @@ class BoneDistances(Summarized):
     @property
     def nearest_joint(self) -> NDArray[np.intp]:
         """The joint that is nearest to each vertex, shape (n,)."""
-        if self.of_vertices is not None:
-            return self.of_vertices.argmin(axis=0)
-        return self.at_welded.argmin(axis=0)[self.graph.vertex_node]
+        return self._over_joints(np.argmin)
 
     @property
     def least(self) -> NDArray[np.float64]:
         """The distance of the nearest joint to each vertex, shape (n,)."""
+        return self._over_joints(np.min)
+
+    def _over_joints(self, reduce: Callable[..., NDArray[Any]]) -> NDArray[Any]:
+        """Reduce distances over the joints, (n,)."""
         if self.of_vertices is not None:
-            return self.of_vertices.min(axis=0)
-        return self.at_welded.min(axis=0)[self.graph.vertex_node]
+            return reduce(self.of_vertices, axis=0)
+        return reduce(self.at_welded, axis=0)[self.graph.vertex_node]
 
     @cached_property
     def inside(self) -> Inside:
@@ -147,12 +150,7 @@ class BoneDistances(Summarized):
     def on_mesh(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
 
-        Vertices not reached through the body have their value in `joint`.
-
-        Raises
-        ------
-        ParameterError
-            `joint` is no joint that may carry weight.
+        Vertices not reached through the body have their value in `joint`. See `field` for errors.
         """
         through = self.field(joint)[self.graph.vertex_node]
         return np.where(self.fallback == REACHED, through, self.joint[joint])
@@ -282,8 +280,8 @@ def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int)
     solver = BoneDistanceSolver(graph)
     sources = solver.sources(bones, samples)
     joint = _per_joint(solver.paths(bones, sources), bones, joints)
-    fallback = why_not_reached(solver, bones, sources, joint, solver.targets, None)
-    return BoneDistances(joint, None, None, bones, sources, fallback[graph.vertex_node], solver)
+    why = why_not_reached(solver, bones, sources, joint, solver.targets, None)
+    return BoneDistances(joint, None, None, bones, sources, why[graph.vertex_node], solver)
 
 
 def _per_joint(distance: NDArray[np.float64], bones: Bones, joints: int) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ def why_not_reached(
     bones: Bones,
     sources: Sources,
     distance: NDArray[np.float64],
-    node: NDArray[np.integer],
+    node: NDArray[np.int32],
     allowed: NDArray[np.bool_] | None,
 ) -> NDArray[np.uint8]:
     """Return why nodes (p,) with distances (j, p) of their joints need a fallback, (p,)."""

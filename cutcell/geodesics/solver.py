@@ -155,6 +155,6 @@ def find_sources(
     if contraction is not None:
         node = contraction.representative(node)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
-    bone, node = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
-    straight = distance_to_segment(graph.nodes[node], bones.start[bone], bones.end[bone])
-    return Sources(node, bone, straight)
+    of, begin = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
+    straight = distance_to_segment(graph.nodes[begin], bones.start[of], bones.end[of])
+    return Sources(begin, of, straight)

@@ -84,7 +84,9 @@ def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tu
 
     Shapes: allowed (n, j), see `skinning_weights`.
     """
-    falloff = (Step("falloff", equation_1),) if method.falloff == "paper" else RIG_STEPS
+    falloff: tuple[Step, ...] = (
+        (Step("falloff", equation_1),) if method.falloff == "paper" else RIG_STEPS
+    )
     if method.refine == "learned":
         falloff = (RIG_STEPS[0], LEARNED_STEP, *RIG_STEPS[1:])
     expand, normalise = Step("vertices", per_vertex), Step("normalise", limit)
