@@ -150,7 +150,7 @@ def weighed_again(
     max_influences: int,
     **refinement: Unpack[RefineOptions],
 ) -> Binding:
-    """Compute the weights of a binding again with at most so many influences."""
+    """Compute the weights of a binding again with at most the given number of influences."""
     method = replace(binding.method, max_influences=max_influences)
     steps = bind_steps(rig, method, corrections, distances=binding.distances, **refinement)
     context = run(steps, Context(method, rig.allowed))
