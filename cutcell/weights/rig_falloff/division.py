@@ -90,35 +90,41 @@ class Division:
             weights = before.weights.copy()
             chosen = before.beyond | (distance != before.distances.at_welded).any(axis=0)
             chosen |= (penalty != before.penalty).any(axis=1)[surface.component]
-        fields = distances, surface, containment, penalty
-        cls(*fields, np.full(joints, np.inf), chosen, weights)._divide(chosen)
+        _divide(distances, surface, penalty, np.full(joints, np.inf), chosen, weights)
         resolution = distances.graph.lattice.resolution
         radius = _radii(weights, distance, surface.areas, distances.bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
         beyond = np.empty(vertices, np.bool_)
         _mark_beyond(distance, weights, radius, beyond)
-        division = cls(*fields, radius, beyond, weights)
-        division._divide(beyond)
-        return division
+        _divide(distances, surface, penalty, radius, beyond, weights)
+        return cls(distances, surface, containment, penalty, radius, beyond, weights)
 
-    def _divide(self, chosen: NDArray[np.bool_]) -> None:
-        """Divide some vertices, in place."""
-        bones, joints = self.distances.bones, len(self.radius)
-        _divide_by_distance(
-            self.surface.points,
-            self.surface.normals,
-            self.distances.at_welded,
-            self.penalty,
-            self.surface.component,
-            np.searchsorted(bones.joint, np.arange(joints + 1)),
-            bones.start,
-            bones.end,
-            MIN_CELLS / self.distances.graph.lattice.resolution,
-            self.radius,
-            chosen,
-            self.weights,
-        )
+
+def _divide(
+    distances: BoneDistances,
+    surface: SurfaceOperators,
+    penalty: NDArray[np.float64],
+    radius: NDArray[np.float64],
+    chosen: NDArray[np.bool_],
+    weights: NDArray[np.float64],
+) -> None:
+    """Divide chosen vertices (k,) among joints: write their weights (k, j)."""
+    bones = distances.bones
+    _divide_by_distance(
+        surface.points,
+        surface.normals,
+        distances.at_welded,
+        penalty,
+        surface.component,
+        np.searchsorted(bones.joint, np.arange(len(radius) + 1)),
+        bones.start,
+        bones.end,
+        MIN_CELLS / distances.graph.lattice.resolution,
+        radius,
+        chosen,
+        weights,
+    )
 
 
 @no_refcount
