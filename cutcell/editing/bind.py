@@ -153,8 +153,8 @@ def weighed_again(
     """Compute the weights of a binding again with at most the given number of influences."""
     method = replace(binding.method, max_influences=max_influences)
     steps = bind_steps(rig, method, corrections, distances=binding.distances, **refinement)
-    context = run(steps, Context(method, rig.allowed))
-    return finished(rig, context, corrections, refinement.get("locked", ()))
+    context = Context(method, rig.allowed, seconds=dict(binding.seconds))
+    return finished(rig, run(steps, context), corrections, refinement.get("locked", ()))
 
 
 def finished(

@@ -134,9 +134,7 @@ def _skeleton(
     parents = np.full(count, -1)
     number = np.cumsum(~removed) - 1
     for j, was in enumerate(staying):
-        above = old.parents[was]
-        while above >= 0 and removed[above]:
-            above = old.parents[above]
+        above = _remaining(old, removed, old.parents[was])
         parents[j] = number[above] if above >= 0 else -1
     joints, deform = np.zeros((count, 3)), np.ones(count, np.bool_)
     joints[: len(staying)], deform[: len(staying)] = old.joints[staying], old.deform[staying]
@@ -163,13 +161,18 @@ def _skeleton(
     return replace(plain, orientations=axes)
 
 
+def _remaining(old: Skeleton, removed: NDArray[np.bool_], joint: int) -> int:
+    """Return a joint or its nearest ancestor that is not removed; -1 for none."""
+    while joint >= 0 and removed[joint]:
+        joint = int(old.parents[joint])
+    return joint
+
+
 def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
     """Return the joint that takes over from each joint of the file: itself where it stays."""
     heir = np.arange(len(old.joints))
     for j in np.flatnonzero(removed):
-        above = old.parents[j]
-        while above >= 0 and removed[above]:
-            above = old.parents[above]
+        above = _remaining(old, removed, j)
         if above < 0:
             below = np.flatnonzero(old.subtree[j] & ~removed)
             above = below[0] if len(below) else (~removed).argmax()

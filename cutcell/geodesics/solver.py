@@ -151,9 +151,8 @@ def find_sources(
     In a contracted graph, sources are the representatives of the nearest nodes.
     """
     points, bone = bone_samples(graph, bones, samples)
-    point, node = tree.nearest(points, TIE)
-    if contraction is not None:
-        node = contraction.representative(node)
+    point, nearest = tree.nearest(points, TIE)
+    node = nearest if contraction is None else contraction.representative(nearest)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     of, begin = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[begin], bones.start[of], bones.end[of])
