@@ -28,13 +28,13 @@ class Binding(Summarized):
         For the rig's own vertices, in their order.
     graph : CutCellGraph
     distances : BoneDistances
-        From as many of each vertex' nearest joints as the falloff needs.
+        Distances from as many of each vertex's nearest joints as the falloff needs.
     seconds : dict of str to float
         Time taken by each stage: "graph", "distances", "weights".
     warnings : tuple of str
-        What a person should know about the result, in sentences.
+        User-facing warnings.
     method : Method
-        What computed it.
+        The method of the weights.
     """
 
     weights: NDArray[np.float64]

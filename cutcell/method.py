@@ -1,4 +1,4 @@
-"""How weights are computed: one object that all stages, commands and the page share."""
+"""Options of the method: one object that all stages, commands and the page share."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MAX_INFLUENCES = 1024
 LEAF_OF: dict[Falloff, Leaf] = {"rig": "fit", "paper": "point"}
 """The bones that each falloff is made for."""
 ALPHA = 0.5
-"""Of the paper's falloff, where none is given."""
+"""Default of the paper's falloff."""
 RIG_JOINTS = 3
 """Nearest joints of each vertex that the falloff "rig" divides the surface among, at least: hardly
 a vertex has a fourth. It follows more joints only as the surface around it does."""
@@ -101,34 +101,34 @@ def _checked_refine(refine: Any, falloff: Falloff) -> Refine:
 
 @dataclass(frozen=True)
 class Method:
-    """How weights are computed, whatever the character: from the lattice to the last weight.
+    """Options of the method, for any character: from the lattice to the last weight.
 
     `cutcell.ANIMATION` makes weights to animate with and is the default everywhere;
     `cutcell.PAPER` is the method of the paper. Wherever a method is taken, either may be given by
     its name, "animation" or "paper", and single options on top of it.
 
-    What is done to weights afterwards (smoothing, symmetry, locked joints) is asked of one
-    character and is no part of the method; see `bind`.
+    Refinements of weights (smoothing, symmetry, locked joints) belong to one character and are
+    not part of the method; see `bind`.
 
     Parameters
     ----------
     resolution : int
         R, lattice cells along the mesh's longest side, 2 to 1024.
     connectivity : {6, 26, "any"}
-        How paths run inside. 6: along the axes, as in the paper. 26: along the diagonals of
+        Directions of paths inside. 6: along the axes, as in the paper. 26: along the diagonals of
         lattice cells, too. "any": at any angle, so that distances converge to geodesic ones.
     winding_threshold : float
         tau: what has at least this winding number is inside; more than 0 and less than 1.
     orient : bool
-        Whether faces that are inside out are flipped first.
+        Flip inverted faces first.
     samples : int
         N, points on each bone that distances start from, 1 to 1000.
     leaf : {"fit", "point", "extend"}, optional
-        Where bones end. "point", "extend": at the child joints; a joint without children is a
-        point, or a bone along its parent's direction. "fit": where the body says. Left out, what
-        the falloff is made for: "fit" for "rig", "point" for "paper".
+        Ends of bones. "point", "extend": at the child joints; a joint without children is a
+        point, or a bone along its parent's direction. "fit": fitted to the body. By default
+        "fit" with the falloff "rig", "point" with "paper".
     falloff : {"rig", "paper"}
-        How weight falls with distance. "rig": made to animate with. "paper": equation 1.
+        Decrease of weight with distance. "rig": for animation. "paper": equation 1.
     refine : {"none", "learned"}
         "learned": a small model that learned from rigs of many makers corrects the shares of the
         falloff "rig" before they diffuse (docs/learned_weights.md).
@@ -137,7 +137,7 @@ class Method:
     max_influences : int, optional
         Joints a vertex may follow, 1 to 1024; None for no limit.
     threshold : float
-        Of the weights that are left, those below it are dropped, 0 to 1.
+        Weights below it are dropped after limiting, 0 to 1.
 
     Raises
     ------
@@ -187,8 +187,8 @@ class Method:
     def with_options(self, **options: Any) -> Method:
         """Return this method with other options.
 
-        Where `falloff` changes, `leaf`, `refine` and `alpha` become what the new one is made for
-        unless they are given, too.
+        With another `falloff`, `leaf`, `refine` and `alpha` return to its defaults unless they are
+        given, too.
 
         Parameters
         ----------
@@ -222,12 +222,12 @@ class Method:
 
     @property
     def joints_needed(self) -> int | None:
-        """From how many nearest joints of each vertex distances are needed; None: from all."""
+        """Number of nearest joints of each vertex that distances are needed from; None: all."""
         return joints_needed(self.falloff, self.max_influences)
 
     @property
     def reach_needed(self) -> float:
-        """How many times as far as the nearest a joint may be and still get some weight."""
+        """Distance relative to the nearest joint's beyond which a joint gets no weight."""
         return RIG_REACH if self.falloff == "rig" else float("inf")
 
 

@@ -40,12 +40,12 @@ def paint_weights(
     weights : array_like, shape (n, j)
         Rows sum to one.
     joint : int or str
-        What is painted, by its index or its name; other joints share what it leaves.
+        Painted joint, by its index or its name; the others share the remaining weight.
     stroke : array_like, shape (s,), int
         Vertices that the brush passes.
     brush : Brush
     mirrored : bool
-        Whether a second brush does the same to the joint of the other side, there.
+        Paint the joint of the other side there in the same way.
     locked : sequence of int or str
         Joints whose weights stay, here the given ones.
     max_influences : int, optional

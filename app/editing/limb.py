@@ -18,7 +18,7 @@ FARTHEST = 2.0
 """Times the lower quartile of the distances to the skin: where a limb opens into the trunk, what is
 farther is the trunk's."""
 MIN_HIT_SHARE = 0.75
-"""Of the directions, which must meet skin."""
+"""Minimum share of the directions that must meet skin."""
 
 
 def cross_section_centre(rig: Rig, joint: int) -> NDArray[np.float64]:

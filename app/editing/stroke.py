@@ -29,7 +29,7 @@ SPREAD = 1 / 8
 """Squared radii: for how long weights diffuse where they are smoothed, so that after it a point is
 half a radius wide (a standard deviation along each axis)."""
 MIN_AREA = 1e-12
-"""Of the largest around a vertex: faces without any are no reason not to be solved for."""
+"""Minimum area around a vertex, as a share of the largest, for faces without any area."""
 ON_THE_OTHER_SIDE = 0.25
 """Radii: how far from a vertex a mirrored stroke may pass to touch the surface there."""
 
@@ -44,7 +44,7 @@ class Brush:
         Over the surface, in the file's units. The brush is strongest in the middle; towards its
         rim, where it does nothing, it falls as (1 - t²)².
     mode : {"add", "subtract", "replace", "smooth"}
-        What it does to the weight of a joint: add the strength, subtract it, or go that part of
+        Change of the weight of a joint: add the strength, subtract it, or go that part of
         the way to the value. Or it goes that part of the way to weights of all joints that
         diffused over the surface.
     strength : float

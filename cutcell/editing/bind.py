@@ -59,16 +59,16 @@ def bind(
         R, 2 to 1024; the method's when left out. That counts along the largest character where
         the file has several, side by side, so that each is bound as if it were alone.
     method : Method, "animation" or "paper"
-        How weights are computed. `cutcell.ANIMATION` is made to animate with, `cutcell.PAPER` is
-        the paper's method.
+        Options of the method. `cutcell.ANIMATION` is for animation, `cutcell.PAPER` is the paper's
+        method.
     smoothing, symmetric, locked
         See `refine_weights`.
     corrections : Corrections, optional
-        What a person corrects: joints without weight, locked or of another reach, parts that are
-        glued, single vertices.
+        Manual corrections: joints without weight, locked or with another gain or radius, parts
+        bound to joints, weights of single vertices.
     graph : CutCellGraph, optional
-        That of another binding of the same mesh by the same method, `binding.graph`: it does not
-        depend on the skeleton. What only depends on it is then not computed again.
+        Graph of another binding of the same mesh by the same method, `binding.graph`. It does not
+        depend on the skeleton and is reused.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph", "distances", "weights", and
         before them "compile" the very first time on a machine, and after a change of the code.

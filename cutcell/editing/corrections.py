@@ -20,7 +20,7 @@ MIN_GAIN, MAX_GAIN = 0.05, 20.0
 MAX_VERTEX = 2**31 - 2
 FARTHEST = 1e30
 ROUNDING = 1e-9
-"""Of weights that sum to one."""
+"""Tolerance for sums of weights."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class JointCorrection:
     Parameters
     ----------
     deform : bool, optional
-        Whether it may carry weight; as the rig says when left out.
+        The joint may carry weight; by default as in the rig.
     locked : bool
-        Whether it keeps the file's weights.
+        The joint keeps the file's weights.
     gain : float
-        Its reach, 0.05 to 20: its distances are divided by this.
+        Factor that its distances are divided by, 0.05 to 20.
     radius : float, optional
         In the file's units: beyond it, distances grow by their square. Measured from the body when
         left out. The paper's falloff has none.
@@ -44,9 +44,9 @@ class JointCorrection:
     parent : str, optional
         The parent joint, "" for none; as in the file when left out.
     added : bool
-        Whether the file does not have it. It needs a position and a parent.
+        The file does not have this joint. It needs a position and a parent.
     was : str, optional
-        What the file calls it, where it has another name now.
+        Name of the joint in the file, if it was renamed.
     """
 
     deform: bool | None = None
@@ -83,13 +83,13 @@ class JointCorrection:
 
     @property
     def structural(self) -> bool:
-        """Whether the skeleton has other joints, names or parents by it."""
+        """True if it changes the joints, names or parents of the skeleton."""
         return self.added or self.parent is not None or self.was is not None
 
 
 @dataclass(frozen=True)
 class PartCorrection:
-    """How a connected component of the mesh is bound.
+    """Binding of a connected component of the mesh.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class PartCorrection:
         Glued to a joint; rigid, as the body is bound where it touches; as any other skin, even
         if it is small or holds bones of one joint only; or with the file's weights.
     joint : str, optional
-        What it is glued to.
+        Joint that the part is glued to.
     """
 
     how: How
@@ -123,7 +123,7 @@ class Corrections:
     ----------
     joints : mapping of str to JointCorrection
     parts : mapping of int to PartCorrection
-        By any vertex of the connected component.
+        Keys are any vertex of the connected component.
     vertices : mapping of int to mappings of str to float
         Weights that override the computed ones of a vertex; they are scaled to sum to one.
     removed : sequence of str
@@ -172,12 +172,12 @@ class Corrections:
         object.__setattr__(self, "removed", _names("removed", self.removed))
 
     def __bool__(self) -> bool:
-        """Whether anything is corrected."""
+        """Return whether there are any corrections."""
         return bool(self.joints or self.parts or self.vertices or self.removed)
 
     @property
     def structural(self) -> bool:
-        """Whether the skeleton has other joints, names or parents by them."""
+        """True if they change the joints, names or parents of the skeleton."""
         return bool(self.removed) or any(one.structural for one in self.joints.values())
 
     def to_json(self, indent: int | None = 2) -> str:

@@ -1,4 +1,4 @@
-"""Why a vertex has the weights that it has: paths, distances, and what each step makes of them."""
+"""Explanation of a vertex's weights: paths, distances, and the weights after each step."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class JointShare:
-    """How a vertex comes to its weight of one joint. Lengths are in the file's units.
+    """The origin of a vertex's weight of one joint. Lengths are in the file's units.
 
     Parameters
     ----------
@@ -73,11 +73,11 @@ class JointShare:
     path : tuple of Piece
         From the vertex to the joint's bones; empty where none leads through the body.
     distance : float
-        That the weights are computed from; infinite where the joint is not among the nearest.
+        Distance that the weights are computed from; infinite if the joint is not among the nearest.
     straight : float
         The distance through the air.
     factors : dict of str to float
-        What the falloff for rigs multiplies the distance by: "component", if the bone is in
+        Factors of the distance in the falloff for rigs: "component", if the bone is in
         another component; "radius", if the vertex is beyond the bone's radius; "facing", if the
         surface looks at the bone rather than away from it. The paper's has none. With either,
         "gain", if corrections give the joint one.
@@ -88,7 +88,7 @@ class JointShare:
     weight : float
         After the last.
     file_weight : float or None
-        What the file says.
+        Weight in the file.
     """
 
     joint: int
@@ -105,7 +105,7 @@ class JointShare:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why a vertex has its weights.
+    """Explanation of a vertex's weights.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Explanation:
     fallback : str
         Why no path through the body reaches the vertex; empty if one does.
     joints : tuple of JointShare
-        Those that any step gives weight, or the file; the largest weight first.
+        Joints with weight after any step or in the file; the largest weight first.
     """
 
     vertex: int
@@ -140,7 +140,7 @@ def explain(
     progress: Progress = silent,
     **options: Unpack[Options],
 ) -> Explanation:
-    """Say why `bind` gives a vertex the weights that it does.
+    """Explain the weights that `bind` computes for a vertex.
 
     Parameters
     ----------
@@ -152,8 +152,8 @@ def explain(
     corrections : Corrections, optional
         As of `bind`.
     distances : BoneDistances, optional
-        Of this rig by this method and these corrections, such as those of a `Binding`;
-        measured when left out.
+        Distances of this rig by this method and these corrections, such as those of a `Binding`;
+        computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph", "distances" and "weights".
     **options

@@ -21,7 +21,7 @@ from .symmetry import balance, find_mirror, mirror_weights
 
 MAX_PASSES = 1000
 STEP = 0.5
-"""How far a pass moves a vertex towards its neighbours: half way, so that nothing oscillates."""
+"""Part of the way to its neighbours that a pass moves a vertex; half of it never oscillates."""
 
 
 def smooth_weights(

@@ -16,13 +16,13 @@ from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
 
 VERTEX_TOLERANCE = 1e-3
-"""Of the bounding box's diagonal: how far from its mirror image a vertex's partner may lie."""
+"""Maximum distance of a vertex's partner from its mirror image, in bounding-box diagonals."""
 
 JOINT_TOLERANCE = 3e-2
-"""The same for joints, which artists set by eye."""
+"""The same for joints, which artists place by eye."""
 
 MIN_SHARE = 0.5
-"""Of the vertices that must have a partner, for the character to count as mirrored."""
+"""Minimum share of vertices with a partner for a character to count as mirrored."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.f
 
 
 def balance(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
-    """Where pruning took one of a pair from a vertex on the plane, take the other too.
+    """Remove the partner of a joint that pruning removed from a vertex on the plane.
 
     Shapes: weights (n, j); returns (n, j).
     """

@@ -84,7 +84,7 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """Where each bone's distances begin.
+    """Nodes where the distances of bones begin.
 
     Parameters
     ----------

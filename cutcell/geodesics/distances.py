@@ -46,16 +46,16 @@ class BoneDistances(Summarized):
         0 for vertices reached through the body, else the reason why not, an index into
         `geodesics.FALLBACK_REASONS`. These have straight distances to a few bones.
     solver : BoneDistanceSolver
-        What computed them, for more distances along the same graph.
+        Solver that computed them, for more distances along the same graph.
     skeleton : Skeleton or None
-        What the bones are of; None where bones were given.
+        Skeleton of the bones; None if bones were given.
     allowed : array, shape (n, j), bool, or None
         Which joints each vertex may follow; None: all.
 
     Attributes
     ----------
     fingerprint : mapping
-        Of the graph, the skeleton and the options; empty in a copy by `replace`.
+        Fingerprint of graph, skeleton and options; empty in a copy by `replace`.
     """
 
     at_welded: NDArray[np.float64]
@@ -194,7 +194,7 @@ def bone_distances(
         Its samples and leaf bones count here, and of how many joints its falloff needs
         distances. Paths run as the graph was built for.
     nearest : int
-        How many bones a vertex follows that no path reaches, 1 or more.
+        Number of bones that a vertex without a path follows, 1 or more.
     nearest_joints : int, optional
         Number of nearest joints to measure from at each vertex, 1 or more; at most as many others
         are measured, too. By default the number that the method needs: all for

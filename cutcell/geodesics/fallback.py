@@ -17,7 +17,7 @@ FALLBACK_REASONS = (
     "no path through the body leads from a bone to the vertex's part of the mesh",
     "its file cannot store weights of the joints that reach the vertex",
 )
-"""What each value of `BoneDistances.fallback` means."""
+"""Meaning of each value of `BoneDistances.fallback`."""
 
 
 def why_not_reached(

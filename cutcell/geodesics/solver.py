@@ -32,7 +32,7 @@ class BoneDistanceSolver:
     ----------
     graph : CutCellGraph
     tree : NodeTree
-        Of the nodes that have edges.
+        Tree of the nodes that have edges.
     contraction : Contraction or None
         The graph with fewer nodes, with connectivity "any".
     targets : array, shape (k,), int32

@@ -17,7 +17,7 @@ class Adjustments:
     gain : array, shape (j,)
         Distances of each joint are divided by this; 1 for most.
     radius : array, shape (j,)
-        Of the surface about each joint's bones, in the unit cube; NaN where it is measured.
+        Radius of the surface about each joint's bones, in the unit cube; NaN where it is measured.
     independent : array, shape (c,), integers
         Welded vertices whose connected components are never rigid.
     """

@@ -46,7 +46,7 @@ class Context:
         Diffusion over the surface. The paper's falloff has none.
     weights : array, shape (k, j) or (n, j), float64
     is_per_vertex : bool
-        Whether `weights` has a row for each vertex instead of each welded vertex.
+        True if `weights` has a row for each vertex instead of each welded vertex.
     seconds : dict of str to float
         Time taken by each stage.
     """

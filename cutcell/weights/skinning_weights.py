@@ -43,9 +43,9 @@ def skinning_weights(
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
-        What `bind` makes of `Corrections`.
+        Arrays that `bind` makes of `Corrections`.
     surface : SurfaceOperators, optional
-        Of the graph's mesh; computed when left out.
+        Operators of the graph's mesh; computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
@@ -156,7 +156,7 @@ def keep_strongest(
     Parameters
     ----------
     distances : BoneDistances
-        What the weights were made from.
+        Distances that the weights were computed from.
     weights : array, shape (n, j)
         Rows sum to one.
     max_influences, threshold
