@@ -172,9 +172,8 @@ def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
     """Return the joint that takes over from each joint of the file: itself where it stays."""
     heir = np.arange(len(old.joints))
     for j in np.flatnonzero(removed):
-        above = _remaining(old, removed, j)
-        if above < 0:
+        heir[j] = _remaining(old, removed, int(j))
+        if heir[j] < 0:
             below = np.flatnonzero(old.subtree[j] & ~removed)
-            above = below[0] if len(below) else (~removed).argmax()
-        heir[j] = above
+            heir[j] = below[0] if len(below) else (~removed).argmax()
     return heir
