@@ -40,6 +40,8 @@ def test_where_all_are_allowed_weights_are_those_without_a_choice():
     every = np.ones_like(halves())
     chosen = bone_distances(GRAPH, RIG.skeleton, allowed=every)
     plain = bone_distances(GRAPH, RIG.skeleton)
+    assert chosen.of_vertices is None
+    assert chosen.fingerprint == plain.fingerprint
     np.testing.assert_allclose(
         cutcell.skinning_weights(chosen, allowed=every),
         cutcell.skinning_weights(plain),
