@@ -26,13 +26,6 @@ def check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.b
         )
 
 
-def is_limit_useful(allowed: NDArray[np.bool_], nearest_joints: int, bones: Bones) -> bool:
-    """Return whether few joints are measured sooner than all: once for each set of joints."""
-    joints = np.unique(bones.joint)
-    # As many other joints are measured at each vertex.
-    return len(np.unique(_row_keys(allowed[:, joints]))) * 2 * nearest_joints <= len(joints)
-
-
 def allowed_distances(
     solver: BoneDistanceSolver,
     bones: Bones,
@@ -41,21 +34,24 @@ def allowed_distances(
     within: float,
     allowed: NDArray[np.bool_],
     progress: Progress,
-) -> NDArray[np.float64]:
+) -> tuple[NDArray[np.float64], int | None]:
     """Compute the distances (j, n) of the joints that each vertex may follow.
+
+    The nearest joints are measured once for each set of joints that vertices may follow, or all
+    joints where that is sooner. Also returns how many were measured, None for all.
 
     Shapes: allowed (n, j).
     """
     node, joints = solver.graph.vertex_node, np.unique(bones.joint)
     result = np.full((allowed.shape[1], len(node)), np.inf)
-    if nearest_joints is None:
+    keys = _row_keys(allowed[:, joints])
+    _, first, group = np.unique(keys, return_index=True, return_inverse=True)
+    # As many other joints are measured at each vertex.
+    if nearest_joints is None or len(first) * 2 * nearest_joints > len(joints):
         by_node = solver.paths(bones, sources, progress=progress)
         result[joints] = by_node.take(node, axis=1)
         result[~allowed.T] = np.inf
-        return result
-    first, group = np.unique(_row_keys(allowed[:, joints]), return_index=True, return_inverse=True)[
-        1:
-    ]
+        return result, None
     for k, example in enumerate(first):
         progress("distances", k / len(first))
         chosen, vertices = allowed[example, bones.joint], np.flatnonzero(group == k)
@@ -64,7 +60,7 @@ def allowed_distances(
             bones.subset(chosen), sources.subset(chosen), nearest_joints, within, targets=targets
         )
         result[np.ix_(np.unique(bones.joint[chosen]), vertices)] = by_node[:, number]
-    return result
+    return result, nearest_joints
 
 
 def _row_keys(rows: NDArray[np.bool_]) -> NDArray[np.void]:

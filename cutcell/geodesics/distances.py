@@ -18,7 +18,7 @@ from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
-from .allowed import allowed_distances, check_allowed, is_limit_useful
+from .allowed import allowed_distances, check_allowed
 from .bones import Bones, Sources
 from .fallback import REACHED, straight_to_nearest, why_not_reached
 from .solver import BoneDistanceSolver
@@ -254,9 +254,9 @@ def bone_distances(
         joint = _per_joint(by_node, bones, len(skeleton.joints))
     else:  # per vertex, as those at one place may differ
         node = graph.vertex_node
-        if nearest_joints is not None and not is_limit_useful(allowed, nearest_joints, bones):
-            nearest_joints = None
-        joint = allowed_distances(solver, bones, sources, nearest_joints, within, allowed, progress)
+        joint, nearest_joints = allowed_distances(
+            solver, bones, sources, nearest_joints, within, allowed, progress
+        )
     fallback = why_not_reached(solver, bones, sources, joint, node, allowed)
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
