@@ -16,7 +16,7 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.cli.console import print_warnings
-from cutcell.weights.warm_up import is_compiled, warm_up
+from cutcell.weights.warm_up import is_compiled, start_process, warm_up
 from cutcell_lab.dataset import load_audit
 from cutcell_viewers.description import Actor
 
@@ -100,8 +100,10 @@ def serve(
     threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
     server = begin(path, chosen, address, opened, actors)
     if is_compiled():
-        # While the browser starts. The first compile ever is left to the page, which tells of it.
+        # While the browser starts.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
+    else:
+        compiling = start_process("warm_up")  # noqa: F841  it ends with this variable
     # It listens from here on; printed earlier, the address might be requested too early.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"

@@ -65,7 +65,16 @@ install() {
     say "Installing cutcell[$extra] into $venv (some minutes the first time)"
     # The build tool is locked as well: put in first, and used as it is there.
     "${pip[@]}" setuptools
+    # The core first: its functions are compiled while the rest is installed.
+    "${pip[@]}" --no-build-isolation --editable . || return 1
+    start_to_compile
     "${pip[@]}" --no-build-isolation --editable ".[$extra]"
+}
+
+# What is not compiled when the set-up ends, or fails, the first binding compiles.
+start_to_compile() {
+    "$venv/bin/python" -m cutcell.weights.warm_up </dev/null >/dev/null 2>&1 &
+    trap "kill $! 2>/dev/null || true" EXIT
 }
 
 if ! supported "$venv/bin/python" || ! "$venv/bin/python" -c 'import pip' 2>/dev/null; then

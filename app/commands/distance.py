@@ -4,11 +4,13 @@ from typing import Any
 
 from cutcell.runtime.progress import Progress
 
+from ..jobs.jobs import COMPUTING, DESCRIBING
 from ..scenes.distance import farthest, field_of, has_field, wants_field
 from ..scenes.graph import build_shown
 from ..scenes.measured_distance import error_points
 from ..scenes.measures import measured_of, measuring, method_of
 from ..state.distance import CONVERGED, MEASURES
+from ..state.graph import READABLE
 from .session import Session
 
 WAVE_SECONDS = 6.0
@@ -45,7 +47,9 @@ def find_graph(session: Session) -> None:
     def report(stage: str, fraction: float) -> None:
         """Report nothing: it takes a moment."""
 
-    jobs.start(lambda progress: build_shown(inputs, progress), done, session.fail, report)
+    # A small graph need not wait until weights are computed, or compiled for.
+    slots = DESCRIBING if state.graph_resolution <= READABLE else COMPUTING
+    jobs.start(lambda progress: build_shown(inputs, progress), done, session.fail, report, slots)
 
 
 def halt_wave(session: Session, front: float | None) -> None:

@@ -20,7 +20,7 @@ from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
 from ..runtime.compiled import compiled, no_refcount
 from ..runtime.progress import Progress, Shares, Tell, silent
-from ..runtime.threads import in_threads, parts, threads
+from ..runtime.threads import in_threads
 from .bones import Sources
 
 BATCH = 8
@@ -73,16 +73,7 @@ def _sort_along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]
     order = np.argsort(height, kind="stable")
     rank = np.empty(len(order), np.int32)
     rank[order] = np.arange(len(order), dtype=np.int32)
-    edges = np.empty_like(graph.edges)
-    shares = parts(len(edges), threads())
-    in_threads(lambda part: _renumber(graph.edges[part], rank, edges[part]), shares)
-    return rank, list_neighbours(edges, graph.lengths, len(rank))
-
-
-@no_refcount
-def _renumber(edges, rank, renumbered):
-    for e in range(len(edges)):
-        renumbered[e, 0], renumbered[e, 1] = rank[edges[e, 0]], rank[edges[e, 1]]
+    return rank, list_neighbours(rank[graph.edges], graph.lengths, len(rank))
 
 
 def _sweep_body(

@@ -1,13 +1,11 @@
-"""Where compiled functions are kept, so that a machine compiles them once.
+"""Cache of compiled functions, so that a machine compiles them once.
 
-numba's own cache raises an exception where no folder can be written to, where the disk is full, and
-where one of its files is empty or cut short; a file with a damaged middle ends the process ("LLVM
-ERROR"). It sees changes in the function's own file only, and two processes that compile a function
-for different arguments can swap their files.
-
-Here each compiled function is a file of its own that begins with a checksum. Its name is a hash of
-all that it depends on. What cannot be read is compiled again; what cannot be written stays in
-memory.
+numba's own cache raises where no folder can be written to, where the disk is full, and where a file
+is cut short, and two processes that compile a function can swap its files. Here each compiled
+function is one compressed file with a checksum, written whole. It is named by a hash of all that it
+depends on: every source of cutcell, and of the package that the function is in, Python, numba and
+the processor. A process waits for a function that another one is compiling. What cannot be read is
+compiled again; what cannot be written stays in memory.
 """
 
 from __future__ import annotations
@@ -18,8 +16,9 @@ import os
 import pickle
 import shutil
 import sys
+import zlib
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -37,18 +36,23 @@ from numba.core.serialize import dumps
 from .notebook import is_notebook
 from .sources import PACKAGE, source_digest
 
-KEPT = 3
-"""How many older sets of functions are left in a folder, for other versions that use it, too."""
-ANNOUNCEMENT = "Compiling, once on this machine. This takes a minute or two."
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl = None  # type: ignore[assignment]
+
+MAX_OLD_SETS = 3
+"""Older sets of functions that stay in a folder, for other versions that use it, too."""
+ANNOUNCEMENT = "Compiling, once on this machine. This takes about a minute."
 COMPLETE = "complete"
-"""Name of the file that says that all functions of a binding are there."""
+"""Name of the file that marks a set with all functions of a binding."""
 
 refusals: list[str] = []
-"""Why this process could not keep what it compiled, once for each file."""
+"""Why this process could not keep what it compiled, one entry per file."""
 
 
 class CompileCache(NullCache):
-    """The cache of one function, for numba's dispatcher.
+    """Cache of one function, for numba's dispatcher.
 
     Parameters
     ----------
@@ -57,49 +61,71 @@ class CompileCache(NullCache):
     """
 
     def __init__(self, function: Callable) -> None:
-        code = function.__code__
-        self._function = code.co_filename, function.__qualname__, code.co_firstlineno
+        self._function = function
+        self._lock = ExitStack()  # held while this process compiles the function
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return what was compiled for some types of arguments, None if that is not to be had."""
+        """Return what was compiled for some types of arguments, None if that is not available."""
         target_context.refresh()
-        name = self._file_name(sig, target_context)
-        for folder in folders() if name else ():
-            with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
-                payload = _checked(Path(folder, name).read_bytes())
-                return CompileResult._rebuild(target_context, *pickle.loads(payload))
-        announce()
-        return None
+        name = self._file_name(sig)
+        compiled = _read(name, target_context)
+        if compiled is None:
+            announce()
+            self._lock.close()  # where compiling failed before
+            _lock(name, self._lock)
+            compiled = _read(name, target_context)  # another process may have compiled it
+        if compiled is not None:
+            self._lock.close()
+        return compiled
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function, where that is possible."""
-        can_be_kept = not data.library.has_dynamic_globals and all(x.can_cache for x in data.lifted)
-        name = self._file_name(sig, data.target_context)
-        if can_be_kept and name:
-            payload = dumps(data._reduce())
-            write(name, hashlib.sha256(payload).digest() + payload)
+        name = self._file_name(sig)
+        if name and not data.library.has_dynamic_globals:
+            write(name, zlib.compress(dumps(data._reduce()), 1))
+        self._lock.close()
 
-    def _file_name(self, sig: Any, target_context: Any) -> str:
-        """Name a version of the function; empty if its source cannot be read, as in an archive."""
-        source, name, line = self._function
+    def _file_name(self, sig: Any) -> str:
+        """Name a version of the function; empty if its sources cannot be read."""
+        function, code = self._function, self._function.__code__
+        package = sys.modules.get((function.__module__ or "").partition(".")[0])
+        file = getattr(package, "__file__", None) or ""
         try:
-            parts = _digest(source), name, line, sig, target_context.codegen().magic_tuple()
+            is_package = file.endswith("__init__.py")
+            digest = source_digest(Path(file).parent if is_package else Path(code.co_filename))
         except OSError:
             return ""
-        return f"{name}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}.kernel"
+        parts = digest, function.__module__, code.co_firstlineno, sig
+        digest = hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+        return f"{function.__qualname__}-{digest}.kernel"
+
+
+def _read(name: str, target_context: Any) -> Any:
+    """Read a compiled function; None if there is none, or its file is damaged."""
+    for folder in folders() if name else ():
+        with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
+            payload = zlib.decompress((folder / name).read_bytes())
+            return CompileResult._rebuild(target_context, *pickle.loads(payload))
+    return None
+
+
+def _lock(name: str, stack: ExitStack) -> None:
+    """Wait for other processes that compile a function; lock its file until the stack closes."""
+    for folder in folders() if name and fcntl else ():
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            file = stack.enter_context((folder / name).open("ab"))
+            return fcntl.flock(file, fcntl.LOCK_EX)
 
 
 def is_complete() -> bool:
-    """Return whether all functions of a binding, as they now are, have been compiled and kept."""
+    """Return whether all functions of a binding are in the cache."""
     return any(os.path.exists(folder / COMPLETE) for folder in folders())
 
 
 @cache
 def announce() -> None:
-    """Say, once in a process, that this machine is to compile the functions of a binding.
-
-    It is logged; in a notebook, which shows no log of this level, it is printed, too.
-    """
+    """Announce, once per process, that functions are compiled: in the log and in notebooks."""
     if not is_complete():
         logging.getLogger("cutcell.compile").info(ANNOUNCEMENT)
         if is_notebook():
@@ -107,21 +133,23 @@ def announce() -> None:
 
 
 def mark_complete() -> None:
-    """Note that all functions of a binding are kept, unless one could not be.
+    """Record that all functions of a binding are kept, unless one could not be.
 
-    Older sets of functions are removed, but for a few.
+    All but a few older sets of functions are removed.
     """
     folder = None if refusals else write(COMPLETE, b"")
     if folder is None:
         return
     with suppress(OSError):
         others = [path for path in folder.parent.glob("kernels-*") if path != folder]
-        for old in sorted(others, key=lambda path: path.stat().st_mtime, reverse=True)[KEPT:]:
+        for old in sorted(others, key=lambda path: path.stat().st_mtime, reverse=True)[
+            MAX_OLD_SETS:
+        ]:
             shutil.rmtree(old, ignore_errors=True)
 
 
 def write(name: str, content: bytes) -> Path | None:
-    """Write a file whole into the first folder that takes it; return that, None if none does."""
+    """Write a whole file into the first writable folder; return the folder, or None."""
     why = "no folder to keep them in is known"
     for folder in folders():
         try:
@@ -147,7 +175,7 @@ def _write(folder: Path, name: str, content: bytes) -> None:
 
 @cache
 def folders() -> tuple[Path, ...]:
-    """List where compiled functions may be: beside the sources, or in the user's cache."""
+    """List the folders of compiled functions: next to the sources, and in the user's cache."""
     chosen: str = vars(config)["CACHE_DIR"]  # what NUMBA_CACHE_DIR says
     bases = [os.path.abspath(chosen)] if chosen else []
     bases.append(str(PACKAGE / "__pycache__"))
@@ -159,23 +187,11 @@ def folders() -> tuple[Path, ...]:
 
 @cache
 def _set_name() -> str:
-    """Name the functions that this compiler makes of these sources for this processor."""
+    """Name the set of functions by compiler, processor and sources."""
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
     processor = sys.platform, binding.get_host_cpu_name(), get_host_cpu_features()
     parts = repr((compiler, processor, source_digest(PACKAGE)))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"
-
-
-@cache
-def _digest(path: str) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-
-
-def _checked(content: bytes) -> bytes:
-    size = hashlib.sha256().digest_size
-    if hashlib.sha256(content[size:]).digest() != content[:size]:
-        raise ValueError("the file is damaged")
-    return content[size:]
 
 
 _set_name()  # now: the files may change while the process runs

@@ -1,17 +1,30 @@
-"""Compile all functions of a binding at once, so that no character waits for one of them."""
+"""Compile all functions of a binding at once, so that no character waits for one of them.
+
+Two processes compile: one from the graph on, the other its winding numbers and then what follows
+the graph. The cache lets neither compile what the other has begun.
+`python -m cutcell.weights.warm_up` does this ahead of time.
+"""
 
 import gc
 import logging
+import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ..geodesics import bone_distances
+from ..geometry.edges import find_edges
 from ..graph import CutCellGraph, build_graph
+from ..graph.winding.boundary import boundary_of
+from ..graph.winding.treecode.caps import smallest_caps
+from ..graph.winding.treecode.cells import classify_cells
+from ..graph.winding.treecode.clusters import build_tree
 from ..method import ANIMATION, RIG_REACH
 from ..runtime import compile_cache
 from ..runtime.subprocesses import python_environment
@@ -19,53 +32,84 @@ from ..runtime.threads import threads
 from .skinning_weights import skinning_weights
 from .warm_up_inputs import block_graph, chain, tube
 
-_is_warm = False
 
-
+@cache
 def warm_up() -> None:
     """Bind small meshes, so that every compiled function is called with the types it meets.
 
-    They are compiled once on a machine (about a minute, in two processes) and kept on disk, see
-    `compile_cache`; from there a process loads them in about a second. Where they cannot be kept,
-    each process compiles them in memory, and one sentence is logged.
+    They are compiled once on a machine and kept on disk, see `compile_cache`; from there a process
+    loads them in about a second. Where they cannot be kept, each process compiles them in memory,
+    and a warning is logged.
     """
-    global _is_warm
     is_complete = compile_cache.is_complete()
-    with nullcontext() if is_complete else _without_garbage_collection():
-        with nullcontext() if is_complete else _helper_process("compile_after_graph"):
-            graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
-        for graph in graphs:
-            _compile_after(graph)
-    _is_warm = True
+    helper = None if is_complete else start_process("compile_from_other_end")
+    try:
+        with _without_garbage_collection():
+            build_graph(tube(), 8, connectivity="any")
+            build_graph(tube(), 8, connectivity=26)
+            _compile_after(block_graph(26))
+            _compile_after(block_graph())
+    finally:
+        if helper is not None:
+            helper.kill()
+            helper.communicate()
     if not is_complete:
         compile_cache.mark_complete()
         if compile_cache.refusals:
             logging.getLogger("cutcell").warning(
-                "the compiled functions cannot be kept (%s), so that each start takes a minute or "
-                "two; set NUMBA_CACHE_DIR to a folder that can be written to",
+                "the compiled functions cannot be kept (%s), so that each start takes about a "
+                "minute; set NUMBA_CACHE_DIR to a folder that can be written to",
                 compile_cache.refusals[-1],
             )
 
 
-def compile_after_graph() -> None:
-    """Compile what a binding needs once it has its graph, which takes about as long as that."""
+def is_compiled() -> bool:
+    """Return whether all functions, as they now are, are compiled: in memory or on this machine."""
+    return warm_up.cache_info().currsize > 0 or compile_cache.is_complete()
+
+
+def compile_from_other_end() -> None:
+    """Compile the same in another order: winding numbers, and then what follows the graph."""
     with _without_garbage_collection():
-        _compile_after(block_graph())
+        graph = block_graph()
+        boundary = boundary_of(*find_edges(graph.faces)[:2])
+        caps = smallest_caps(graph.nodes[: graph.first_point], boundary)
+        classify_cells(build_tree(caps), 8, ANIMATION.winding_threshold)
+        _compile_after(graph)
+        _compile_after(block_graph(26))
 
 
-@contextmanager
-def _without_garbage_collection() -> Iterator[None]:
-    """Do not look for garbage: a compiler makes millions of objects, and looks every moment."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
+def start_process(function: str) -> subprocess.Popen | None:
+    """Call a function of this module in another process, which ends with the result's `stdin`.
+
+    None where no process can start, or hand over what it compiles.
+    """
+    # A program that Python is built into could start itself once more.
+    is_python = Path(sys.executable or "").stem.lower().startswith("python")
+    if not is_python or threads() < 2 or compile_cache.write("begun", b"") is None:
+        return None
+    code = f"from {__name__} import _end_with_parent, {function}; _end_with_parent(); {function}()"
+    nothing = subprocess.DEVNULL
+    with suppress(OSError):
+        return subprocess.Popen(
+            [sys.executable, "-c", code], env=python_environment(),
+            stdin=subprocess.PIPE, stdout=nothing, stderr=nothing,
+        )  # fmt: skip
+    return None
+
+
+def _end_with_parent() -> None:
+    """End this process when its standard input ends."""
+
+    def wait() -> None:
+        sys.stdin.read()
+        os._exit(0)
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def _compile_after(graph: CutCellGraph) -> None:
+    """Compile what a binding needs once it has its graph."""
     methods = ANIMATION, ANIMATION.with_options(falloff="paper")
     for method in methods:  # which measure from different numbers of joints
         distances = bone_distances(graph, chain(), method=method, leaf="fit", within=RIG_REACH)
@@ -76,39 +120,16 @@ def _compile_after(graph: CutCellGraph) -> None:
 
 
 @contextmanager
-def _helper_process(function: str) -> Iterator[None]:
-    """Let another process call a function of this module meanwhile; wait for it at the end.
-
-    Only one thread of a process can compile. What that process fails to do is left to this one.
-    """
-    if not _can_be_helped():
-        yield
-        return
-    code = f"from cutcell.weights import warm_up; warm_up.{function}()"
-    command = [sys.executable, "-c", code]
-    nothing = subprocess.DEVNULL
+def _without_garbage_collection() -> Iterator[None]:
+    """Switch garbage collection off: a compiler makes millions of objects that stay."""
+    was_enabled = gc.isenabled()
+    gc.disable()
     try:
-        process = subprocess.Popen(
-            command, env=python_environment(), stdin=nothing, stdout=nothing, stderr=nothing
-        )
-    except OSError:
         yield
-        return
-    with process:
-        try:
-            yield
-            process.wait()
-        finally:
-            process.kill()
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
-def _can_be_helped() -> bool:
-    """Return whether another process can start, and hand over what it compiles."""
-    # A program that Python is built into could start itself once more.
-    is_python = Path(sys.executable or "").stem.lower().startswith("python")
-    return is_python and threads() > 1 and compile_cache.write("begun", b"") is not None
-
-
-def is_compiled() -> bool:
-    """Return whether all functions, as they now are, are compiled: in memory or on this machine."""
-    return _is_warm or compile_cache.is_complete()
+if __name__ == "__main__":
+    warm_up()

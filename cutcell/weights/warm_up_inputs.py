@@ -51,7 +51,7 @@ def chain() -> Skeleton:
     return Skeleton(joints, np.array([*range(-1, 6), -1]))
 
 
-def block_graph() -> CutCellGraph:
+def block_graph(connectivity: int | str = "any") -> CutCellGraph:
     """Make a graph of the tube without `build_graph`, so that nothing has to be compiled for it.
 
     All lattice points of the cube are taken to lie inside, and no ray to hit the surface: each
@@ -87,7 +87,7 @@ def block_graph() -> CutCellGraph:
         faces=mesh.faces.astype(np.int32),
         lattice=lattice,
         is_closed=False,
-        connectivity="any",
+        connectivity=connectivity,
         interior=stretches,
         inverted=np.zeros(len(mesh.faces), bool),
     )

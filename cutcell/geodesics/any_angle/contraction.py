@@ -13,6 +13,7 @@ replaces four. This changes paths along edges, but any-angle paths are straight 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +22,13 @@ from ...geometry.counting_sort import counting_sort, spatial_order
 from ...graph import INTERIOR, SURFACE, CutCellGraph
 from ...graph.inside_edges import lattice_steps
 from ...graph.interior import OUTSIDE
-from ...graph.neighbours import count_ends, list_ends
+from ...graph.neighbours import list_neighbours
 from ...runtime.compiled import compiled
 
 KEPT, UNKNOWN = -1, -2
 """Instead of a representative: of nodes that are not contracted, or not yet known to be."""
 CORNERS = 3
 NO_BLOCK = -1
-BLOCK_POINTS = 8
 MANY_VERTICES = 50_000
 """With more vertices, wavefronts take half as long if these are numbered by place."""
 
@@ -109,102 +109,57 @@ def find_blocks(
 
     Shapes: places (p, 3), steps (p, 6); returns (p,).
     """
-    return _find_blocks(places, resolution, steps)
+    deep = (steps != OUTSIDE).all(axis=1)
+    cell = (places * resolution).astype(np.int64)
+    upper = 2 * cell >= resolution
+    from_middle = np.where(upper, cell - (resolution + 1) // 2, resolution // 2 - 1 - cell)
+    innermost = np.flatnonzero(deep & (from_middle % 2 == 0).all(axis=1))
+    outward = np.where(upper[innermost], [0, 1, 2], [3, 4, 5])  # columns of `steps`
+    points = [innermost]
+    for axis in range(3):  # where a neighbour is outside, the point itself is not deep
+        points += [steps[point, outward[:, axis]] for point in points]
+    is_block = np.all([deep[point] for point in points], axis=0)
+    block = np.full(len(places), NO_BLOCK, np.int32)
+    for point in points:
+        block[point[is_block]] = innermost[is_block]
+    return block
 
 
-@compiled
-def _find_blocks(places, resolution, steps):
-    deep = np.zeros(len(places), np.bool_)
-    for p in range(len(steps)):
-        deep[p] = steps[p].min() != OUTSIDE
-    innermost = np.full(len(places), NO_BLOCK, np.int32)
-    outward, block = np.empty(3, np.int64), np.empty(BLOCK_POINTS, np.int32)
-    for p in range(len(steps)):
-        begins = deep[p] and _begins_block(places[p], resolution, outward)
-        if begins and _fill_block(p, steps, deep, outward, block):
-            for k in range(BLOCK_POINTS):
-                innermost[block[k]] = p
-    return innermost
-
-
-@compiled(inline="always")
-def _begins_block(place, resolution, outward):
-    """Return whether a point is innermost in its block; write the outward columns of `steps`."""
-    begins = True
-    for axis in range(3):
-        k = int(place[axis] * resolution)
-        upper = 2 * k >= resolution
-        from_middle = k - (resolution + 1) // 2 if upper else resolution // 2 - 1 - k
-        begins &= from_middle % 2 == 0
-        outward[axis] = axis if upper else axis + 3
-    return begins
-
-
-@compiled(inline="always")
-def _fill_block(p, steps, deep, outward, block):
-    """List the points of a block, up to the first that is not deep inside; return if all are."""
-    block[0] = p
-    for k in range(1, BLOCK_POINTS):
-        axis = 2 if k >= 4 else 1 if k >= 2 else 0
-        block[k] = steps[block[k - (1 << axis)], outward[axis]]
-        if not deep[block[k]]:
-            return False
-    return True
-
-
-# A single kernel, so that another thread acquires Python's lock only once.
-@compiled
-def _contract(nodes, edges, block, mesh):
+def _contract(
+    nodes: NDArray[np.float64], edges: NDArray[np.int32], block: NDArray[np.int32], mesh: int
+) -> tuple[Any, ...]:
     """Contract a graph with `mesh` mesh vertices; edges of surface nodes to corners come last."""
     first_surface = mesh + len(block)
     ends = len(edges) - CORNERS * (len(nodes) - first_surface)
     representative = _find_representatives(edges[:ends], block, mesh, len(nodes))
-    node, number = _number(representative)
+    node = np.flatnonzero(representative < 0).astype(np.int32)
+    number = np.empty(len(nodes), np.int32)
+    number[node] = np.arange(len(node))
+    contracted = np.flatnonzero(representative >= 0)
+    number[contracted] = number[representative[contracted]]
     kept_edges = np.empty_like(edges)
     count = _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges)
     # Kept nodes are below 0 here, and left out.
     start, order = counting_sort(representative[first_surface:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count)
-    indptr, indices = _list_neighbours(kept_edges[:count], len(node))
-    places, crossing = np.empty((len(node), 3)), 0
-    for n in range(len(node)):
-        for axis in range(3):
-            places[n, axis] = nodes[node[n], axis]
-        crossing += node[n] < first_surface
-    return indptr, indices, places, node, number, crossing
+    indptr, indices, _ = list_neighbours(kept_edges[:count], np.empty(0), len(node))
+    return indptr, indices, nodes[node], node, number, int(np.searchsorted(node, first_surface))
 
 
-@compiled
-def _find_representatives(edges, block, mesh, count):
+def _find_representatives(
+    edges: NDArray[np.int32], block: NDArray[np.int32], mesh: int, count: int
+) -> NDArray[np.int32]:
     """Return the representative of each contracted node; less than 0 for kept ones."""
     representative = np.full(count, UNKNOWN, np.int32)
-    for p in range(len(block)):
-        if block[p] != NO_BLOCK and block[p] != p:
-            representative[mesh + p] = mesh + block[p]
+    in_block = np.flatnonzero((block != NO_BLOCK) & (block != np.arange(len(block))))
+    representative[mesh + in_block] = mesh + block[in_block]
     first_surface = mesh + len(block)
-    for e in range(len(edges)):
-        for side in range(2):
-            c, other = edges[e, side], edges[e, 1 - side]
-            if c >= first_surface:
-                single = representative[c] == UNKNOWN and mesh <= other < first_surface
-                representative[c] = other if single else KEPT
+    is_surface = edges >= first_surface
+    crossing, other = edges[is_surface], edges[:, ::-1][is_surface]
+    single = np.bincount(crossing)[crossing] == 1
+    single &= (other >= mesh) & (other < first_surface)
+    representative[crossing] = np.where(single, other, KEPT)
     return representative
-
-
-@compiled
-def _number(representative):
-    """Return the kept nodes, and for each node its number or that of its representative."""
-    node = np.empty(len(representative), np.int32)
-    number = np.empty(len(representative), np.int32)
-    count = 0
-    for n in range(len(representative)):
-        if representative[n] < 0:
-            node[count], number[n] = n, count
-            count += 1
-    for n in range(len(representative)):
-        if representative[n] >= 0:
-            number[n] = number[representative[n]]
-    return node[:count].copy(), number
 
 
 @compiled
@@ -225,17 +180,6 @@ def _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges):
         kept_edges[count, 0], kept_edges[count, 1] = number[u], number[v]
         count += 1
     return count
-
-
-@compiled
-def _list_neighbours(edges, count):
-    indptr = np.zeros(count + 1, np.int32)
-    count_ends(edges, 0, count, indptr[1:])
-    for node in range(count):
-        indptr[node + 1] += indptr[node]
-    indices, no_lengths = np.empty(2 * len(edges), np.int32), np.empty(0)
-    list_ends(edges, no_lengths, 0, count, indptr[:-1].copy(), indices, no_lengths)
-    return indptr, indices
 
 
 @compiled(inline="always")

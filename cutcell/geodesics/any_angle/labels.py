@@ -33,16 +33,8 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
     A parent is the label of the node where the path bends last (Theta*), or ~bone.
     """
     labels = np.empty(nodes * each, LABEL)
-    _empty(labels)
+    labels[:] = np.inf, NO_JOINT, LOOSE, 0
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
-
-
-@compiled
-def _empty(labels):
-    for label in range(len(labels)):
-        labels[label].distance, labels[label].joint = np.inf, NO_JOINT
-        labels[label].after = LOOSE
-        labels[label].before = 0
 
 
 @compiled(inline="always")

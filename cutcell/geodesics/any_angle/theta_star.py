@@ -170,16 +170,9 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
             distance[row[labels[label].joint], t] = reached
 
 
-@no_refcount
-def _leave_out(within, near, distance):
-    """Set distances beyond `within` times the least, which is at least `near`, to infinity."""
-    for t in range(distance.shape[1]):
-        least = np.inf
-        for j in range(len(distance)):
-            least = min(least, distance[j, t])
-        for j in range(len(distance)):
-            if distance[j, t] > within * max(least, near):
-                distance[j, t] = np.inf
+def _leave_out(within: float, near: float, distance: NDArray[np.float64]) -> None:
+    """Set distances (j, t) beyond `within` times the least, at least `near`, to infinity."""
+    distance[distance > within * np.maximum(distance.min(axis=0), near)] = np.inf
 
 
 @no_refcount

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ...geometry.counting_sort import counting_sort
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
 from .labels import NO_JOINT, find_room, no_labels
@@ -63,37 +62,21 @@ class Wavefront:
 def rank_bones(bones: Bones, sources: Sources) -> Ranking:
     """Order bones, joints and sources by position."""
     order = np.lexsort(np.concatenate([bones.start, bones.end], axis=1).T[::-1])
-    ranked = _rank(order, bones.start, bones.end, bones.joint, sources.bone)
-    joints, places, table, rank, bone, by_bone = ranked
-    begin = Sources(sources.node[by_bone], bone, sources.distance[by_bone])
-    return Ranking(joints, places, table, rank, begin)
-
-
-@compiled
-def _rank(order, start, end, joint, bone):
-    """Rank joints by their first bone; sort sources by bone."""
-    table, rank = np.empty((len(order), 7)), np.empty(len(order), np.int32)
-    joints, places = np.empty(len(order), np.int32), np.empty((len(order), 3))
-    row_of, rank_of = np.empty(len(order), np.int32), np.full(joint.max() + 1, NO_JOINT, np.int32)
-    count = 0
-    for row in range(len(order)):
-        b = order[row]
-        row_of[b] = row
-        squared = 0.0
-        for axis in range(3):
-            along = end[b, axis] - start[b, axis]
-            table[row, axis], table[row, 3 + axis] = start[b, axis], along
-            squared += along * along
-        table[row, 6] = 1 / squared if squared > 0 else 0.0
-        if rank_of[joint[b]] == NO_JOINT:
-            rank_of[joint[b]], joints[count] = count, joint[b]
-            for axis in range(3):
-                places[count, axis] = start[b, axis]
-            count += 1
-        rank[row] = rank_of[joint[b]]
-    source_row = row_of[bone]
-    _, by_bone = counting_sort(source_row, len(order))
-    return joints[:count], places[:count], table, rank, source_row[by_bone], by_bone
+    start, along = bones.start[order], (bones.end - bones.start)[order]
+    squared = (along**2).sum(axis=1)
+    inverse = np.divide(1, squared, out=np.zeros(len(order)), where=squared > 0)
+    joints, first, number = np.unique(bones.joint[order], return_index=True, return_inverse=True)
+    by_bone = np.argsort(first)  # joints in the order of their first bones
+    rank = np.argsort(by_bone)[number].astype(np.int32)
+    row = np.argsort(order).astype(np.int32)[sources.bone]
+    ranked = np.argsort(row, kind="stable")
+    return Ranking(
+        joints[by_bone],
+        start[first[by_bone]],
+        np.column_stack([start, along, inverse]),
+        rank,
+        Sources(sources.node[ranked], row[ranked], sources.distance[ranked]),
+    )
 
 
 def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ...geometry.vectors import length, triangle_normal
+from ...geometry.triangles import areas
 from ...graph import CutCellGraph
 from ...rig import Skeleton
-from ...runtime.compiled import no_refcount
 from ..bones import Bones
 from ..nearest import NodeTree
 from .chains import SAME_PLACE, Chains, find_chains
@@ -163,35 +162,17 @@ def aim_leaf_bones(
 
     Shapes: aimed (b,), distance (t, k), nearest (k,).
     """
-    end = bones.end.copy()
     points = graph.nodes[: len(nearest)]
-    area = np.zeros(len(points))
-    _add_areas(points, graph.faces, area)
-    total, middle = np.zeros(len(distance)), np.zeros((len(distance), 3))
-    _sum_regions(points, area, distance, nearest, total, middle)
+    area = np.bincount(graph.faces.ravel(), np.repeat(areas(points[graph.faces]), 3), len(points))
+    leaf, vertex = np.isfinite(distance).nonzero()
+    to_leaf = distance[leaf, vertex]
+    share = np.divide(nearest[vertex], to_leaf, out=np.ones(len(leaf)), where=to_leaf > 0)
+    part = area[vertex] * share**REGION_POWER
+    total = np.bincount(leaf, part, len(distance))
+    moments = [np.bincount(leaf, part * points[vertex, axis], len(distance)) for axis in range(3)]
     has_skin = total > 0
-    end[np.flatnonzero(aimed)[has_skin]] = middle[has_skin] / total[has_skin, None]
+    end = bones.end.copy()
+    end[np.flatnonzero(aimed)[has_skin]] = (np.array(moments) / np.where(has_skin, total, 1)).T[
+        has_skin
+    ]
     return replace(bones, end=end)
-
-
-@no_refcount
-def _sum_regions(points, area, distance, nearest, total, middle):
-    """Sum the area of each leaf bone's skin, and its first moment."""
-    for leaf in range(len(distance)):
-        for k in range(len(points)):
-            to_leaf = distance[leaf, k]
-            if to_leaf < np.inf:
-                part = area[k] * (nearest[k] / to_leaf if to_leaf > 0 else 1.0) ** REGION_POWER
-                total[leaf] += part
-                for axis in range(3):
-                    middle[leaf, axis] += part * points[k, axis]
-
-
-@no_refcount
-def _add_areas(points, faces, areas):
-    """Add twice the area of each triangle to all its corners."""
-    for f in range(len(faces)):
-        a, b, c = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
-        double_area = length(triangle_normal(a, b, c))
-        for corner in range(3):
-            areas[faces[f, corner]] += double_area

@@ -7,10 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry.vectors import segment_fraction
+from ...geometry.segments import closest_on_segment
 from ...graph import CutCellGraph
-from ...graph.interior import OUTSIDE, point_number
-from ...runtime.compiled import compiled
 from ..nearest import NodeTree
 
 STEP = 0.25
@@ -37,15 +35,24 @@ class BodyProbe:
     """
 
     def __init__(self, graph: CutCellGraph, tree: NodeTree) -> None:
-        self._graph = graph
         self._tree = tree
         self.resolution = graph.lattice.resolution
+        interior = graph.interior
+        column = np.repeat(np.arange(self.resolution**2), np.diff(interior.start))
+        # Stretches of lattice points inside, numbered over the whole lattice.
+        self._first = column * self.resolution + interior.first
+        self._last = column * self.resolution + interior.last
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return for each point (..., 3) whether its lattice cell's centre is inside."""
-        points = np.asarray(points, np.float64)
-        is_inside = _inside(points.reshape(-1, 3), self.resolution, self._graph.interior.table)
-        return is_inside.reshape(points.shape[:-1])
+        cell = np.floor(np.asarray(points, np.float64) * self.resolution)
+        in_cube = ((cell >= 0) & (cell < self.resolution)).all(axis=-1)
+        x, y, z = np.moveaxis(np.where(in_cube[..., None], cell, 0).astype(np.int64), -1, 0)
+        place = (x * self.resolution + y) * self.resolution + z
+        stretch = np.searchsorted(self._first, place, side="right") - 1
+        is_inside: NDArray[np.bool_] = in_cube & (stretch >= 0)
+        is_inside[is_inside] = place[is_inside] <= self._last[stretch[is_inside]]
+        return is_inside
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return whether the body is in or beside the lattice cell of each point (..., 3)."""
@@ -64,8 +71,17 @@ class BodyProbe:
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Compute where rays from points (p, 3) leave the body; zero if they never enter it."""
-        table, step = self._graph.interior.table, STEP / self.resolution
-        return _exit_distances(start, direction, step, self.resolution, table)
+        distance, step = np.zeros(len(start)), STEP / self.resolution
+        rays, was_inside = np.arange(len(start)), np.zeros(len(start), np.bool_)
+        for k in range(int(2 / step)):  # at most across the cube
+            is_inside = self.inside(start[rays] + k * step * direction[rays])
+            leaves = was_inside & ~is_inside
+            distance[rays[leaves]] = k * step
+            goes_on = is_inside | (~leaves & (k + 1 < ENTRY))
+            rays, was_inside = rays[goes_on], is_inside[goes_on]
+            if not len(rays):
+                break
+        return distance
 
     def distance_to_others(
         self,
@@ -78,66 +94,18 @@ class BodyProbe:
 
         Shapes: start, direction (p, 3), limit (p,), others (b, 3); returns (p,).
         """
-        table, step = self._graph.interior.table, 2 * STEP / self.resolution
-        return np.array(
-            [
-                _distance_to_others(*ray, *segments, step, self.resolution, table)
-                for *ray, segments in zip(start, direction, limit, others, strict=True)
-            ]
-        )
+        rays = zip(start, direction, limit, others, strict=True)
+        return np.array([self._distance_to_others(*ray) for ray in rays])
 
-
-@compiled
-def _inside(points, resolution, table):
-    is_inside = np.empty(len(points), np.bool_)
-    for p in range(len(points)):
-        is_inside[p] = _is_inside(resolution, table, points[p, 0], points[p, 1], points[p, 2])
-    return is_inside
-
-
-@compiled(inline="always")
-def _is_inside(resolution, table, x, y, z):
-    start, first, last, number = table
-    x, y, z = np.floor(x * resolution), np.floor(y * resolution), np.floor(z * resolution)
-    if not (0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution):
-        return False
-    column = int(x) * resolution + int(y)
-    return point_number(start, first, last, number, column, int(z)) != OUTSIDE
-
-
-@compiled
-def _exit_distances(start, direction, step, resolution, table):
-    away = np.zeros(len(start))
-    for p in range(len(start)):
-        was_inside = False
-        for k in range(int(2 / step)):  # at most across the cube
-            x, y, z = (
-                start[p, 0] + k * step * direction[p, 0],
-                start[p, 1] + k * step * direction[p, 1],
-                start[p, 2] + k * step * direction[p, 2],
-            )
-            is_inside = _is_inside(resolution, table, x, y, z)
-            if was_inside and not is_inside:
-                away[p] = k * step
-                break
-            if not is_inside and k + 1 == ENTRY:
-                break
-            was_inside = is_inside
-    return away
-
-
-@compiled
-def _distance_to_others(point, direction, limit, start, end, step, resolution, table):
-    for k in range(1, int(limit / step) + 1):
-        p = point + k * step * direction
-        for b in range(len(start)):
-            offset = start[b] + segment_fraction(start[b], end[b], p) * (end[b] - start[b]) - p
-            if (offset * offset).sum() > (NEARER * k * step) ** 2:
-                continue
-            inside = 0
-            for share in ALONG:
-                x, y, z = p + share * offset
-                inside += _is_inside(resolution, table, x, y, z)
-            if inside >= SEEN * len(ALONG):
-                return k * step
-    return limit
+    def _distance_to_others(self, start, direction, limit, others):
+        """Compute the same for one ray: start (3,), direction (3,), limit ()."""
+        step = 2 * STEP / self.resolution
+        away = np.arange(1, int(limit / step) + 1) * step
+        points = start + away[:, None] * direction
+        nearest, _ = closest_on_segment(points[:, None], *others)
+        offset = nearest - points[:, None]
+        near = (offset**2).sum(axis=2) <= ((NEARER * away) ** 2)[:, None]
+        k, other = near.nonzero()
+        segments = points[k, None] + ALONG[:, None] * offset[k, other, None]
+        sees = self.inside(segments).mean(axis=1) >= SEEN
+        return away[k[sees.argmax()]] if sees.any() else limit

@@ -1,17 +1,21 @@
 """Compiled kernels are found again; where they cannot be kept or read, they are compiled."""
 
 import errno
-import hashlib
 import os
 import pickle
 import shutil
+import subprocess
 import sys
+import textwrap
+import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from numba import int64
 
 from cutcell.runtime import compile_cache, sources
+from cutcell.runtime.compile_cache import CompileCache
 from cutcell.runtime.compiled import compiled
 
 
@@ -63,17 +67,13 @@ def test_a_notebook_is_told_of_a_first_compile(folder, monkeypatch, capsys):
     assert capsys.readouterr().err.strip() == compile_cache.ANNOUNCEMENT
 
 
-def with_checksum(content):
-    return hashlib.sha256(content).digest() + content
-
-
 DAMAGES = {
     "empty": lambda content: b"",
     "cut short": lambda content: content[:1000],
     "zeros at its end": lambda content: content[:1000] + bytes(len(content) - 1000),
-    "damaged machine code": lambda content: content.replace(b"\x7fELF", b"\x7fELf"),
-    "not a pickle": lambda content: with_checksum(b"something else"),
-    "another pickle": lambda content: with_checksum(pickle.dumps((1, 2))),
+    "one bit": lambda content: content[:2000] + bytes([content[2000] ^ 1]) + content[2001:],
+    "not a pickle": lambda content: zlib.compress(b"something else"),
+    "another pickle": lambda content: zlib.compress(pickle.dumps((1, 2))),
 }
 
 
@@ -105,7 +105,7 @@ def test_on_a_full_disk_kernels_stay_in_memory(folder, monkeypatch):
 
     monkeypatch.setattr(Path, "write_bytes", write_some)
     assert outcome() == (2, "compiled")
-    assert not list(folder.iterdir())
+    assert not any(file.stat().st_size for file in folder.iterdir())
     assert "No space left" in compile_cache.refusals[0]
     compile_cache.mark_complete()
     assert not compile_cache.is_complete()
@@ -126,11 +126,62 @@ def test_the_next_folder_is_taken_where_one_takes_nothing(folder, monkeypatch):
 
 def test_what_another_compiler_or_another_source_made_is_not_taken(folder, monkeypatch):
     outcome()
-    monkeypatch.setattr(compile_cache, "_digest", lambda path: "another source")
+    monkeypatch.setattr(compile_cache, "source_digest", lambda path: "another source")
     assert outcome() == (2, "compiled")
-    monkeypatch.setattr(compile_cache, "_digest", lambda path: Path("nowhere").read_text())
+    monkeypatch.setattr(compile_cache, "source_digest", lambda path: Path("nowhere").read_text())
     assert outcome() == (2, "compiled")  # in an archive
     assert len(list(folder.iterdir())) == 2
+
+
+def test_a_kernel_is_compiled_again_when_a_source_of_its_package_changes(tmp_path):
+    package = tmp_path / "laboratory"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "constants.py").write_text("FACTOR = 2\n")
+    (package / "kernels.py").write_text(
+        textwrap.dedent(
+            """
+            from cutcell.runtime.compiled import compiled
+            from .constants import FACTOR
+
+            @compiled
+            def scaled(number):
+                return FACTOR * number
+            """
+        )
+    )
+    script = "from laboratory.kernels import scaled as f; print(f(1), len(f.stats.cache_hits))"
+
+    def run():
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+        return subprocess.check_output(
+            [sys.executable, "-c", script], cwd=tmp_path, env=environment, text=True
+        ).split()
+
+    assert [run(), run()] == [["2", "0"], ["2", "1"]]
+    (package / "constants.py").write_text("FACTOR = 3\n")
+    assert [run(), run()] == [["3", "0"], ["3", "1"]]
+
+
+def test_a_process_waits_for_what_another_one_compiles(folder):
+    source = f"""
+        import sys, time
+        from contextlib import ExitStack
+        from pathlib import Path
+        from cutcell.runtime import compile_cache
+        compile_cache.folders = lambda: (Path({str(folder)!r}),)
+        name, = sys.argv[1:]
+        compile_cache._lock(name, stack := ExitStack())
+        print("locked", flush=True)
+        time.sleep(1)
+        compile_cache.write("done", b"")
+    """
+    name = CompileCache(one_more)._file_name((int64,))
+    command = [sys.executable, "-c", textwrap.dedent(source), name]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "locked\n"
+        assert outcome() == (2, "compiled")
+        assert (folder / "done").exists()
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import subprocess
 import sys
 import textwrap
-from contextlib import nullcontext
 from dataclasses import fields
 from itertools import pairwise
 
@@ -74,8 +73,8 @@ def another_machine(tmp_path, monkeypatch):
     """
     warm_up()
     monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels-new",))
-    monkeypatch.setattr(compilation, "_is_warm", False)
-    monkeypatch.setattr(compilation, "_helper_process", lambda function: nullcontext())
+    monkeypatch.setattr(compilation, "start_process", lambda function: None)
+    warm_up.cache_clear()
     return tmp_path
 
 
@@ -84,7 +83,7 @@ def test_all_is_compiled_once_it_was_warmed_up(another_machine, monkeypatch):
     assert not is_compiled()
     warm_up()
     assert is_compiled()
-    monkeypatch.setattr(compilation, "_is_warm", False)  # as a process started later
+    warm_up.cache_clear()  # as a process started later
     assert is_compiled()
 
 
@@ -127,48 +126,47 @@ def test_the_graph_made_by_hand_is_of_the_types_that_are_built():
     np.testing.assert_allclose(weights.sum(axis=1), 1)
 
 
-def test_another_process_compiles_meanwhile(tmp_path, monkeypatch):
+def test_another_process_compiles_what_this_one_then_loads(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    with compilation._helper_process("compile_cache.mark_complete"):
+    with compilation.start_process("compile_cache.mark_complete") as process:
         assert not list(tmp_path.rglob("complete"))  # it takes a second to start
+        assert process.wait() == 0
     assert len(list(tmp_path.rglob("complete"))) == 1
+
+
+def test_another_process_ends_with_this_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # all is to be compiled
+    process = compilation.start_process("compile_from_other_end")
+    process.stdin.close()  # as if this process had been killed
+    assert process.wait(60) == 0
+    assert not list(tmp_path.rglob("complete"))
+
+
+def test_it_is_stopped_when_this_one_is_interrupted(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    started, popen = [], subprocess.Popen
+
+    def interrupt(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(compile_cache, "is_complete", lambda: False)
+    monkeypatch.setattr(compilation, "build_graph", interrupt)
+    monkeypatch.setattr(
+        subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[0]
+    )
+    with pytest.raises(KeyboardInterrupt):
+        warm_up.__wrapped__()
+    assert started[0].returncode not in (0, None)
 
 
 def test_no_other_process_is_started_where_it_could_hand_nothing_over(monkeypatch):
     monkeypatch.setattr(compile_cache, "folders", tuple)
     monkeypatch.setattr(compile_cache, "refusals", [])
     monkeypatch.delattr(subprocess, "Popen")
-    done = []
-    with compilation._helper_process("compile_after_graph"):
-        done.append(True)
-    assert done
+    assert compilation.start_process("warm_up") is None
 
 
-def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # all is to be compiled
-    started, popen = [], subprocess.Popen
-    monkeypatch.setattr(
-        subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[0]
-    )
-    with pytest.raises(KeyboardInterrupt), compilation._helper_process("compile_after_graph"):
-        raise KeyboardInterrupt
-    assert started[0].returncode not in (0, None)
-
-
-@pytest.mark.parametrize("executable", ["", None, "/nowhere/python3", "/usr/bin/false"])
+@pytest.mark.parametrize("executable", ["", None, "/nowhere/python3", "/opt/maya/bin/maya.bin"])
 def test_without_another_process_this_one_goes_on(executable, monkeypatch):
     monkeypatch.setattr(sys, "executable", executable)
-    done = []
-    with compilation._helper_process("compile_after_graph"):
-        done.append(True)
-    assert done
-
-
-def test_a_program_that_python_is_built_into_is_not_started(monkeypatch):
-    def refuse(*arguments, **options):
-        raise AssertionError(arguments)
-
-    monkeypatch.setattr(subprocess, "Popen", refuse)
-    monkeypatch.setattr(sys, "executable", "/opt/maya/bin/maya.bin")
-    with compilation._helper_process("compile_after_graph"):
-        pass
+    assert compilation.start_process("warm_up") is None
