@@ -16,8 +16,6 @@ from typing import Any, TypeVar
 from weakref import WeakSet
 
 import numba
-import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import Cancelled
 from .progress import Progress, silent
@@ -27,10 +25,7 @@ Result = TypeVar("Result")
 Second = TypeVar("Second")
 
 POLL_EVERY = 0.1
-"""Seconds between two reports of a long kernel's progress."""
-MANY_STEPS = 50_000
-"""Kernels of fewer steps end before the first report."""
-
+"""Seconds between two repeated reports."""
 MAX_ABANDONED = 3
 """Threads that may go on after their work was cancelled, until they report again."""
 
@@ -100,34 +95,6 @@ def submit(work: Callable[[], Result]) -> Callable[[], Result]:
         return work
     task = _pool(threads() - 1).submit(work)
     return lambda: work() if task.cancel() else task.result()
-
-
-def watched(
-    work: Callable[[NDArray[np.int64]], Result], steps: int, tell: Callable[[float], None]
-) -> Result:
-    """Report the progress of a long kernel ten times a second, and let it be stopped."""
-    pace = np.zeros(2, np.int64)
-    if steps < MANY_STEPS:
-        return work(pace)
-    result: Future[Result] = Future()
-
-    def run() -> None:
-        _mark_worker()
-        try:
-            result.set_result(work(pace))
-        except BaseException as error:
-            result.set_exception(error)
-
-    runner = threading.Thread(target=run, name="cutcell-watched")
-    runner.start()
-    try:
-        while True:
-            if wait([result], POLL_EVERY).done:
-                return result.result()
-            tell(pace[0] / steps)
-    finally:
-        pace[1] = 1
-        runner.join()
 
 
 def cancellable(work: Callable[[Progress], Result], progress: Progress, first_stage: str) -> Result:

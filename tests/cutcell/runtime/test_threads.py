@@ -15,7 +15,6 @@ from cutcell.runtime.threads import (
     parts,
     submit,
     threads,
-    watched,
 )
 
 
@@ -116,46 +115,6 @@ def test_who_is_told_can_end_the_work(count, monkeypatch):
     with pytest.raises(Cancelled):
         in_threads(work, range(1000), stop)
     assert len(begun) <= count
-
-
-def counting(pace, steps=10**6):
-    """Stand for a kernel: it lets go of Python's lock now and then."""
-    for step in range(steps):
-        pace[0] = step
-        if pace[1]:
-            return "stopped"
-        if step % 1000 == 0:
-            time.sleep(0.001)
-    return step
-
-
-def test_a_long_kernel_is_watched():
-    told = []
-    assert watched(lambda pace: counting(pace, 200_000), 200_000, told.append) == 199_999
-    assert told == sorted(told)
-    assert 0 < told[-1] < 1
-
-
-def test_a_long_kernel_is_stopped_by_who_is_told():
-    stopped = []
-
-    def stop(done):
-        raise Cancelled
-
-    with pytest.raises(Cancelled):
-        watched(lambda pace: stopped.append(counting(pace)), 10**6, stop)
-    assert stopped == ["stopped"]
-
-
-def test_errors_of_a_long_kernel_reach_the_caller():
-    with pytest.raises(ZeroDivisionError):
-        watched(lambda pace: 1 / 0, 10**6, lambda done: None)
-
-
-def test_a_short_kernel_is_called_as_it_is():
-    assert watched(lambda pace: threading.current_thread(), 10, pytest.fail) is (
-        threading.current_thread()
-    )
 
 
 def test_work_that_does_not_report_is_cancelled():
