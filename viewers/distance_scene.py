@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
-from cutcell.runtime.display import short_names
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
 from .palette import TEXELS, UNREACHED, UNREACHED_TEXELS
+from .short_names import short_names
 
 
 def distance_scene(

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
-from cutcell.runtime.display import short_names
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
 from .joint_colors import colors_of
 from .palette import UNREACHED, to_bytes
+from .short_names import short_names
 
 MIXED = "Each bone's colour, mixed by weight"
 MOST = "Dominant bone"

@@ -16,9 +16,11 @@ from cutcell.binding import Binding
 from cutcell.errors import FileError, ParameterError
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
-from cutcell.runtime.display import spreadsheet_cell
+from cutcell.runtime.display import printable
 from cutcell.runtime.writing import check_place, write_all
 
+FORMULA = tuple("=+-@\t\r＝＋－＠")
+"""Prefixes that start a formula in a spreadsheet."""
 DIGITS = 7
 """Significant digits of a CSV's numbers: what 32 bits hold."""
 
@@ -109,3 +111,14 @@ def _packed_csv(rig: Rig, arrays: dict[str, NDArray], settings: Mapping[str, Any
     for vertex, row in enumerate(table.astype(np.float64).tolist()):
         writer.writerow([vertex, *(f"{value:.{DIGITS}g}" for value in row)])
     return packed.getvalue().encode()
+
+
+def spreadsheet_cell(name: str) -> str:
+    """Return a name as a cell of a table; one that looks like a formula begins with an apostrophe.
+
+    References
+    ----------
+    OWASP, "CSV Injection".
+    """
+    shown = printable(name)
+    return f"'{shown}" if name.lstrip().startswith(FORMULA) or name.startswith(FORMULA) else shown

@@ -1,11 +1,13 @@
 """Texts of errors: sentences without the server's folders."""
 
 import errno
+import re
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 from cutcell.errors import CutcellError
-from cutcell.runtime.display import printable, without_folders
+from cutcell.runtime.display import printable
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -13,6 +15,9 @@ FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """Errors of systems for a disk that is full, or full for this user."""
 
 KEPT = "Nothing was changed"
+
+# A folder that begins at the root, with what follows it up to the last part.
+_FOLDERS = re.compile(r"(?<![\w.:/\\])(?:[A-Za-z]:)?[\\/](?:[^\s\\/\"':;,()]+[\\/])+(?=[^\s\\/])")
 
 
 def error_text(error: BaseException) -> str:
@@ -50,3 +55,12 @@ def sentence(text: str) -> str:
     if first.isalpha():
         text = text[:1].upper() + text[1:]
     return text + ("" if text.endswith((".", "!", "?")) else ".")
+
+
+def without_folders(text: str, known: Iterable[Path] = ()) -> str:
+    """Return a message that tells the names of files, and not where they are."""
+    for folder in sorted({str(path) for path in known}, key=len, reverse=True):
+        if len(folder) > 1:
+            inner = r"[\\/](?:[^\s\\/\"':;,()]+[\\/])*"
+            text = re.sub(re.escape(folder.rstrip("\\/")) + inner, "", text)
+    return _FOLDERS.sub("", text)

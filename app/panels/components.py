@@ -5,7 +5,8 @@ from typing import Any
 import panel_material_ui as pmui
 
 from cutcell.editing.corrections import PartCorrection
-from cutcell.runtime.display import short_names, shown_name
+from cutcell.runtime.display import shown_name
+from cutcell_viewers.short_names import short_names
 
 from ..commands import correct
 from ..commands.session import Session

@@ -10,7 +10,8 @@ import panel_material_ui as pmui
 import param
 
 from cutcell.rig import Rig
-from cutcell.runtime.display import printable, short_names, shown_name
+from cutcell.runtime.display import printable, shown_name
+from cutcell_viewers.short_names import short_names
 
 from ..commands import pose
 from ..commands.session import Session

@@ -7,7 +7,7 @@ import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
 from cutcell.io.materials.transfer import has_materials
-from cutcell.runtime.display import short_names
+from cutcell_viewers.short_names import short_names
 
 from ..commands import pose as actions
 from ..commands.session import Session

@@ -4,7 +4,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.runtime.display import short_names
+from cutcell_viewers.short_names import short_names
 
 from ..commands import structure as actions
 from ..commands.session import Session

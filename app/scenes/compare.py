@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.runtime.display import short_names
 from cutcell_lab.baselines import METHODS
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
+from cutcell_viewers.short_names import short_names
 from cutcell_viewers.skin import skin_of_weights
 from cutcell_viewers.weights_scene import weight_colors
 

@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph.winding import winding_number
-from cutcell.runtime.display import short_names, shown_name
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
+from cutcell_viewers.short_names import short_names
 
 from ..state import State
 from ..state.compare import NOW

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from cutcell.editing.corrections import JointCorrection
 from cutcell.metrics import vertex_shares
 from cutcell.rig.deform_joints import DeformJoints
-from cutcell.runtime.display import short_names, shown_name
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
+from cutcell_viewers.short_names import short_names
 
 from ..state import State
 from .memo import Memo

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.runtime.display import short_names
 from cutcell_viewers.description import Actor, Cut, Legend
 from cutcell_viewers.plane_section import PlaneSection
 from cutcell_viewers.section_scene import body_section, field_face, section_lines, winding_face
+from cutcell_viewers.short_names import short_names
 
 from ..state import State
 from .common import bounds_of, theme_of

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.runtime.display import short_names
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_dots
+from cutcell_viewers.short_names import short_names
 from cutcell_viewers.weights_scene import (
     bone_difference_colors,
     count_colors,

@@ -10,10 +10,10 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from cutcell.runtime.display import short_names
 from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
+from cutcell_viewers.short_names import short_names
 from tests.app.browser import changed
 from tests.conftest import SHARED_RIGS
 

@@ -18,15 +18,14 @@ from cutcell.runtime.display import (
     MAX_LETTERS,
     json_safe,
     printable,
-    short_names,
     shown_name,
-    spreadsheet_cell,
-    without_folders,
 )
-from cutcell_app.files.table_export import save_numbers
+from cutcell_app.files.table_export import save_numbers, spreadsheet_cell
+from cutcell_app.jobs.messages import without_folders
 from cutcell_lab.baselines.compare.markdown import comparison_markdown
 from cutcell_lab.baselines.compare.scores import Comparison, MethodScore, RigScore
 from cutcell_lab.baselines.compare.terminal import comparison_table
+from cutcell_viewers.short_names import short_names
 
 NASTY = {
     "colour": "\x1b[31mred\x1b[0m",
