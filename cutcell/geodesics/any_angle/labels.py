@@ -1,7 +1,14 @@
-"""Labels of nodes: for each of a node's nearest joints the distance and the path's parent vertex.
+"""Labels of nodes, and a queue of them by distance.
 
-With k labels a node, label s of node v has the index v * k + s. Parents are read far more often
-than the rest and are in a separate array: those of a node fit into one cache line.
+A label holds the distance of one of a node's nearest joints, and the path's parent vertex. With k
+labels a node, label s of node v has the index v * k + s. Parents are read far more often than the
+rest and are in a separate array: those of a node fit into one cache line.
+
+The queue has buckets (Dial 1969). A bucket is a doubly linked list through the labels themselves:
+a label is inserted and removed without a search, and with two integers of memory. Buckets are
+served in order, and are so narrow that the order within one does not matter. The first label of
+each bucket is in an array `head`, shape (buckets,), int32; `scale` is the number of buckets a unit
+of distance. The last bucket holds everything beyond, until `move_on`.
 """
 
 from __future__ import annotations
@@ -10,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.compiled import compiled
-from .queue import LOOSE
 
 NO_JOINT, NO_PARENT = -1, -(2**31)
 """The joint and the parent of an unused label."""
+END, LOOSE, SETTLED = -1, -2, -3
+"""Values of `after` other than a label: last of its bucket, in no bucket, settled."""
 
 LABEL = np.dtype(
     [
@@ -24,7 +32,7 @@ LABEL = np.dtype(
     ],
     align=True,
 )
-"""Joint: its rank. After and before: neighbours in a bucket, see `queue`."""
+"""Joint: its rank. After and before: neighbours in a bucket; before the first is ~bucket."""
 
 
 def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32]]:
@@ -56,3 +64,48 @@ def has_parent(parents, each, v, parent):
     for label in range(v * each, v * each + each):
         is_parent |= parents[label] == parent
     return is_parent
+
+
+@compiled(inline="always")
+def bucket_of(head, scale, distance):
+    """Return the bucket of a distance."""
+    return min(int(distance * scale), len(head) - 1)
+
+
+@compiled(inline="always")
+def join(head, labels, bucket, label):
+    """Insert a label that is in no bucket."""
+    follower = head[bucket]
+    head[bucket], labels[label].after, labels[label].before = label, follower, ~bucket
+    if follower != END:
+        labels[follower].before = label
+
+
+@compiled(inline="always")
+def leave(head, labels, label):
+    """Remove a label from its bucket, if it is in one."""
+    after, before = labels[label].after, labels[label].before
+    if after < END:
+        return
+    if before >= 0:
+        labels[before].after = after
+    else:
+        head[~before] = after
+    if after != END:
+        labels[after].before = before
+    labels[label].after = LOOSE
+
+
+@compiled
+def move_on(head, scale, labels):
+    """Redistribute the last bucket over all; return the distance at which they begin."""
+    label, origin = head[-1], np.inf
+    while label != END:
+        origin = min(origin, labels[label].distance)
+        label = labels[label].after
+    label, head[-1] = head[-1], END
+    while label != END:
+        follower = labels[label].after
+        join(head, labels, bucket_of(head, scale, labels[label].distance - origin), label)
+        label = follower
+    return origin

@@ -27,9 +27,18 @@ from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads, parts, threads
 from ..bones import TIE, Bones, Sources
 from .contraction import Contraction
-from .labels import NO_JOINT, find_room, has_parent
+from .labels import (
+    END,
+    NO_JOINT,
+    SETTLED,
+    bucket_of,
+    find_room,
+    has_parent,
+    join,
+    leave,
+    move_on,
+)
 from .line_of_sight import body_of, has_line_of_sight, parent_position, straight
-from .queue import END, SETTLED, bucket_of, join, leave, move_on
 from .wavefront import Ranking, Wavefront, begin, enqueue, partition_sources, rank_bones
 
 NEAR = 2
@@ -42,9 +51,6 @@ BUCKETS = 4
 """Buckets for a unit of distance, times R squared: each is at most a hundredth of a cell wide."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
-CONSTANT_LABELS = 3
-"""Labels a node for which the kernel is compiled with their number as a constant: a tenth
-faster."""
 BATCH = 25_000
 """Labels that are settled in a few hundredths of a second: then progress is reported."""
 PART = 2_000_000
@@ -130,14 +136,13 @@ def _propagate(
 ) -> None:
     """Settle all labels."""
     labels = front.labels
-    slots = (0,) * front.each if front.each == CONSTANT_LABELS else np.empty(front.each)
     scale = float(BUCKETS * body[0] ** 2)
     head = np.full(int(SPAN * scale), END, np.int32)
     enqueue(labels, front.each, head, scale, contraction.node, contraction.number)
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     graph = adjacency, body, ranking.table, within
-    arguments = *graph, slots, labels, front.parents, front.least, head, scale, ahead
+    arguments = *graph, front.each, labels, front.parents, front.least, head, scale, ahead
     last, origin, settled = len(head) - 1, 0.0, 0
     bucket = 0
     while True:
@@ -181,7 +186,7 @@ def _settle(
     body,
     bones,
     within,
-    slots,
+    each,
     labels,
     parents,
     least,
@@ -194,10 +199,9 @@ def _settle(
 ):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
-    `slots` has as many entries as a node has labels; `ahead` is a workspace for a node's edges.
+    `each` is the number of labels a node has; `ahead` is a workspace for a node's edges.
     Returns the bucket to continue with, and how many labels have been settled.
     """
-    each = len(slots)
     indptr, indices = adjacency
     resolution, first_point, first_surface, nodes, _ = body
     settled = 0

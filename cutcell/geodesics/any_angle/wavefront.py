@@ -10,8 +10,7 @@ from scipy.spatial.distance import cdist
 
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
-from .labels import NO_JOINT, find_room, no_labels
-from .queue import bucket_of, join
+from .labels import NO_JOINT, bucket_of, find_room, join, no_labels
 
 
 @dataclass(frozen=True, eq=False)

@@ -172,7 +172,6 @@ def aim_leaf_bones(
     moments = [np.bincount(leaf, part * points[vertex, axis], len(distance)) for axis in range(3)]
     has_skin = total > 0
     end = bones.end.copy()
-    end[np.flatnonzero(aimed)[has_skin]] = (np.array(moments) / np.where(has_skin, total, 1)).T[
-        has_skin
-    ]
+    middle = np.array(moments).T[has_skin] / total[has_skin, None]
+    end[np.flatnonzero(aimed)[has_skin]] = middle
     return replace(bones, end=end)

@@ -21,6 +21,8 @@ SEEN = 0.85
 """The part of a segment that must run inside for line of sight between its ends."""
 NEARER = 0.999
 """A bone is nearer than the ray's start if its distance is below this factor of the start's."""
+PAIRS = 500
+"""Sample points and bones that are tested for line of sight at a time."""
 
 
 class BodyProbe:
@@ -106,6 +108,10 @@ class BodyProbe:
         offset = nearest - points[:, None]
         near = (offset**2).sum(axis=2) <= ((NEARER * away) ** 2)[:, None]
         k, other = near.nonzero()
-        segments = points[k, None] + ALONG[:, None] * offset[k, other, None]
-        sees = self.inside(segments).mean(axis=1) >= SEEN
-        return away[k[sees.argmax()]] if sees.any() else limit
+        for pairs in np.split(np.arange(len(k)), range(PAIRS, len(k), PAIRS)):
+            to_other = offset[k[pairs], other[pairs], None]
+            segments = points[k[pairs], None] + ALONG[:, None] * to_other
+            sees = self.inside(segments).mean(axis=1) >= SEEN
+            if sees.any():
+                return away[k[pairs[sees.argmax()]]]
+        return limit
