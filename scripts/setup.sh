@@ -73,7 +73,8 @@ install() {
 
 # What is not compiled when the set-up ends, or fails, the first binding compiles.
 start_to_compile() {
-    "$venv/bin/python" -m cutcell.weights.warm_up </dev/null >/dev/null 2>&1 &
+    "$venv/bin/python" -c 'from cutcell.weights.warm_up import warm_up; warm_up()' \
+        </dev/null >/dev/null 2>&1 &
     trap "kill $! 2>/dev/null || true" EXIT
 }
 

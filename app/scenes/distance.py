@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell.geodesics import path_length, shortest_path
+from cutcell.geodesics import path_length, trace_path
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.distance_scene import distance_colors, distance_limits, file_units
 from cutcell_viewers.marks import path_tube
@@ -98,7 +98,7 @@ def path_of(state: State, memo: Memo) -> Any:
     return memo(
         "path",
         (distances, joint, vertex, field),
-        lambda: shortest_path(distances, joint, vertex, field),
+        lambda: trace_path(distances, joint, vertex, field).points,
     )
 
 

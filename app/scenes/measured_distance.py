@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from cutcell.errors import ParameterError
-from cutcell.geodesics import BoneDistances, Bones, shortest_path
+from cutcell.geodesics import BoneDistances, Bones, trace_path
 from cutcell.geodesics.distances import distances_from
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
@@ -183,7 +183,7 @@ def _in_graph(rig: Rig, bones: Bones, joint: int, method: Method) -> MeasuredDis
     field = distances.field(joint)
 
     def path_from(vertex: int) -> NDArray[np.float64]:
-        return graph.lattice.to_file(shortest_path(distances, joint, vertex, field))
+        return graph.lattice.to_file(trace_path(distances, joint, vertex, field).points)
 
     return _measured(field[graph.vertex_node], path_from)
 

@@ -6,7 +6,7 @@ from .bones import Bones, Sources, bone_samples, bone_segments
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
 from .solver import BoneDistanceSolver
-from .tracing.paths import PIECES, TracedPath, path_length, shortest_path, trace_path
+from .tracing.paths import PIECES, TracedPath, path_length, trace_path
 
 __all__ = [
     "FALLBACK_REASONS",
@@ -22,6 +22,5 @@ __all__ = [
     "bone_segments",
     "distance_to_segment",
     "path_length",
-    "shortest_path",
     "trace_path",
 ]

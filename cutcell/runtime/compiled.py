@@ -13,7 +13,8 @@ def compiled(function: Callable | None = None, **options: Any) -> Any:
     """Compile a function that runs without Python's lock, and keep it (`compile_cache`)."""
     if function is None:
         return lambda function: compiled(function, **options)
-    dispatcher = njit(nogil=True, no_cfunc_wrapper=True, **options)(function)
+    options = {"nogil": True, "no_cfunc_wrapper": True, **options}
+    dispatcher = njit(**options)(function)
     if isinstance(dispatcher, Dispatcher):  # it is a plain function under NUMBA_DISABLE_JIT
         dispatcher._cache = CompileCache(function)  # type: ignore[attr-defined]
     return dispatcher

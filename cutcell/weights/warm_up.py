@@ -2,7 +2,6 @@
 
 Two processes compile: one from the graph on, the other its winding numbers and then what follows
 the graph. The cache lets neither compile what the other has begun.
-`python -m cutcell.weights.warm_up` does this ahead of time.
 """
 
 import gc
@@ -88,7 +87,7 @@ def start_process(function: str) -> subprocess.Popen | None:
     is_python = Path(sys.executable or "").stem.lower().startswith("python")
     if not is_python or threads() < 2 or compile_cache.write("begun", b"") is None:
         return None
-    code = f"from {__name__} import _end_with_parent, {function}; _end_with_parent(); {function}()"
+    code = f"import {__name__} as module; module._end_with_parent(); module.{function}()"
     nothing = subprocess.DEVNULL
     with suppress(OSError):
         return subprocess.Popen(
@@ -129,7 +128,3 @@ def _without_garbage_collection() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
-
-
-if __name__ == "__main__":
-    warm_up()

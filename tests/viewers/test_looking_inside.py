@@ -8,7 +8,7 @@ import pytest
 import pyvista
 
 import cutcell
-from cutcell.geodesics import shortest_path
+from cutcell.geodesics import trace_path
 from cutcell.graph import slice_rays
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.graph_scene import cut_at, depth_field
@@ -214,7 +214,7 @@ def test_a_mark_follows_the_weights_of_its_vertex(rig):
 
 
 def test_the_way_back_begins_at_the_vertex(rig, binding):
-    way = shortest_path(binding.distances, 0, 40)
+    way = trace_path(binding.distances, 0, 40).points
     scene = to_scene(rig, binding.graph.lattice.to_file(way))
     actor = path_tube(rig, scene)
     start = to_scene(rig, rig.mesh.vertices[40])

@@ -115,7 +115,7 @@ def find_blocks(
     from_middle = np.where(upper, cell - (resolution + 1) // 2, resolution // 2 - 1 - cell)
     innermost = np.flatnonzero(deep & (from_middle % 2 == 0).all(axis=1))
     outward = np.where(upper[innermost], [0, 1, 2], [3, 4, 5])  # columns of `steps`
-    points = [innermost]
+    points: list[NDArray[Any]] = [innermost]
     for axis in range(3):  # where a neighbour is outside, the point itself is not deep
         points += [steps[point, outward[:, axis]] for point in points]
     is_block = np.all([deep[point] for point in points], axis=0)

@@ -48,11 +48,11 @@ class BodyProbe:
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return for each point (..., 3) whether its lattice cell's centre is inside."""
         cell = np.floor(np.asarray(points, np.float64) * self.resolution)
-        in_cube = ((cell >= 0) & (cell < self.resolution)).all(axis=-1)
+        in_cube = np.asarray(((cell >= 0) & (cell < self.resolution)).all(axis=-1))
         x, y, z = np.moveaxis(np.where(in_cube[..., None], cell, 0).astype(np.int64), -1, 0)
         place = (x * self.resolution + y) * self.resolution + z
         stretch = np.searchsorted(self._first, place, side="right") - 1
-        is_inside: NDArray[np.bool_] = in_cube & (stretch >= 0)
+        is_inside = np.asarray(in_cube & (stretch >= 0))
         is_inside[is_inside] = place[is_inside] <= self._last[stretch[is_inside]]
         return is_inside
 

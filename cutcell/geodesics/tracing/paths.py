@@ -53,29 +53,6 @@ class TracedPath:
         return float(self.lengths.sum())
 
 
-def shortest_path(
-    distances: BoneDistances, joint: int, vertex: int, field: ArrayLike | None = None
-) -> NDArray[np.float64]:
-    """Walk from a vertex back to the nearest of a joint's bones.
-
-    Parameters
-    ----------
-    distances, joint, vertex, field
-        See `trace_path`.
-
-    Returns
-    -------
-    array, shape (p, 3), float64
-        The points of what `trace_path` returns.
-
-    Raises
-    ------
-    ParameterError
-        There is no such vertex, `joint` may carry no weight, or `field` has another shape.
-    """
-    return trace_path(distances, joint, vertex, field).points
-
-
 def trace_path(
     distances: BoneDistances, joint: int, vertex: int, field: ArrayLike | None = None
 ) -> TracedPath:

@@ -11,7 +11,7 @@ from cutcell import (
     Skeleton,
     TriangleMesh,
 )
-from cutcell.geodesics import PIECES, path_length, shortest_path, trace_path
+from cutcell.geodesics import PIECES, path_length, trace_path
 from cutcell.geodesics.tracing.inside import TOLERANCE
 from cutcell_assets import demo_path
 from cutcell_lab.benchmarks.paths import outside_by, samples_of
@@ -33,7 +33,7 @@ def test_along_edges_it_is_exactly_as_long_as_the_field_says(connectivity):
     mesh, distances = measured(connectivity)
     field = distances.field(0)
     for vertex in range(0, len(mesh.vertices), 97):
-        path = shortest_path(distances, 0, vertex, field)
+        path = trace_path(distances, 0, vertex, field).points
         assert path_length(path) == pytest.approx(
             field[distances.graph.vertex_node[vertex]], rel=5e-3
         )
@@ -44,7 +44,7 @@ def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
     graph, field = distances.graph, distances.field(0)
     far = np.argsort(-field[graph.vertex_node])[: len(graph.vertex_node) // 2 : 41]
     for vertex in far:
-        path = shortest_path(distances, 0, int(vertex), field)
+        path = trace_path(distances, 0, int(vertex), field).points
         assert path_length(path) == pytest.approx(field[graph.vertex_node[vertex]], rel=0.1)
         assert len(path) <= 9
         steps = np.linspace(0, 1, 19)[:, None, None]
@@ -56,7 +56,7 @@ def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
 
 def test_it_begins_at_the_vertex_and_ends_on_the_bone():
     mesh, distances = measured("any")
-    path = shortest_path(distances, 0, 5)
+    path = trace_path(distances, 0, 5).points
     np.testing.assert_allclose(distances.graph.lattice.to_file(path[0]), mesh.vertices[5])
     foot = distances.graph.lattice.to_file(path[-1])
     np.testing.assert_allclose(foot[1:], [0.1, 0.12], atol=1e-9)
@@ -67,17 +67,17 @@ def test_where_no_path_leads_there_is_none():
     (v, f), (w, g) = meshes.box(0, 0.4), meshes.box(0.6, 1)
     mesh = TriangleMesh(np.concatenate([v, w]), np.concatenate([f, g + len(v)]))
     distances = bone_distances(build_graph(mesh, 10), Skeleton([[0.2, 0.2, 0.2]], [-1]))
-    assert shortest_path(distances, 0, len(v)).shape == (0, 3)
+    assert trace_path(distances, 0, len(v)).points.shape == (0, 3)
 
 
 def test_what_there_is_not_is_refused():
     _, distances = measured(6, resolution=8)
     with pytest.raises(ParameterError, match="vertex"):
-        shortest_path(distances, 0, 10**6)
+        trace_path(distances, 0, 10**6)
     with pytest.raises(ParameterError, match="no bone"):
-        shortest_path(distances, 1, 0)
+        trace_path(distances, 1, 0)
     with pytest.raises(ParameterError, match="field has the shape"):
-        shortest_path(distances, 0, 0, np.zeros(3))
+        trace_path(distances, 0, 0, np.zeros(3))
 
 
 @pytest.mark.parametrize("connectivity", [6, 26, "any"])
