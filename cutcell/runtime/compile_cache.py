@@ -16,6 +16,7 @@ import os
 import pickle
 import shutil
 import sys
+import time
 import zlib
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
@@ -46,6 +47,8 @@ MAX_OLD_SETS = 3
 ANNOUNCEMENT = "Compiling, once on this machine. This takes about a minute."
 COMPLETE = "complete"
 """Name of the file that marks a set with all functions of a binding."""
+PATIENCE, POLL_EVERY = 60.0, 0.02
+"""Seconds to wait for a function that another process compiles, and between two looks at it."""
 
 refusals: list[str] = []
 """Why this process could not keep what it compiled, one entry per file."""
@@ -110,12 +113,19 @@ def _read(name: str, target_context: Any) -> Any:
 
 
 def _lock(name: str, stack: ExitStack) -> None:
-    """Wait for other processes that compile a function; lock its file until the stack closes."""
+    """Wait for another process that compiles a function; lock its file until the stack closes."""
     for folder in folders() if name and fcntl else ():
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             file = stack.enter_context((folder / name).open("ab"))
-            return fcntl.flock(file, fcntl.LOCK_EX)
+            end = time.monotonic() + PATIENCE
+            while time.monotonic() < end:
+                try:
+                    return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    time.sleep(POLL_EVERY)
+            return None
+    return None
 
 
 def is_complete() -> bool:
