@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Unpack
 
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
@@ -15,9 +16,10 @@ from .fingerprint import graph_fingerprint
 from .memory import check_hits
 from .ray_tracers import CASTERS
 from .rays import cast_all_rays
+from .segments import PointwiseWindingNumbers, RayWindingNumbers, inside_intervals
 from .surface import prepare_surface
-from .winding.libigl import fast_intervals
-from .winding.treecode.intervals import treecode_intervals
+from .winding.libigl import fast_winding_numbers
+from .winding.treecode.winding_numbers import TreecodeWindingNumbers
 
 
 def build_graph(
@@ -91,13 +93,15 @@ def build_graph(
         else:
             hits = [CASTERS[rays](*shape, axis) for axis in range(3)]
         report(0.2)
-        # Hits and lattice points divide the rays into segments. Those whose midpoint has a winding
-        # number of at least tau are kept: see `segments.inside_intervals` for the plain version.
         if winding == "exact":
-            inside = treecode_intervals(surface, hits, tau, share_of(report, 0.2, 0.9))
+            numbers: RayWindingNumbers = TreecodeWindingNumbers(
+                surface, hits, tau, share_of(report, 0.2, 0.45)
+            )
         else:
-            inside = fast_intervals(surface, hits, tau)
-        report(0.9)
+            numbers = PointwiseWindingNumbers(surface, partial(fast_winding_numbers, surface))
+        # Hits and lattice points divide the rays into segments. Those whose midpoint has a winding
+        # number of at least tau are kept.
+        inside = inside_intervals(hits, tau, numbers, resolution, share_of(report, 0.45, 0.9))
         graph = assemble(surface, hits, inside, method.connectivity, tau)
         object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method))
         report(1.0)

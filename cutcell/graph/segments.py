@@ -1,23 +1,27 @@
 """Algorithm 1's segments of rays, and which of them are kept (paper section 3.1).
 
 Ray hits and lattice points divide each ray into segments. A segment is kept if the winding number
-at its midpoint is at least tau. This is the plain version, which lists all segments: it defines
-the result, and works with any winding number. `winding/treecode/intervals.py` returns the same
-intervals without listing them, so that its memory grows with the surface, not with the volume.
+at its midpoint is at least tau.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .rays import RayHits, points_on_rays
+from ..runtime.compiled import compiled
+from ..runtime.progress import Tell
+from ..runtime.threads import in_threads
+from .rays import RayHits, first_at_least, points_on_rays
 from .surface import Surface
 
 NONE = -1
+CHUNK = 2**18
+"""Segments that are divided and decided together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,104 +44,169 @@ class InsideIntervals:
     high: NDArray[np.int32]
 
 
-def inside_intervals(
-    surface: Surface,
-    hits: Sequence[RayHits],
-    winding_threshold: float,
-    winding_number: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-) -> list[InsideIntervals]:
-    """Keep the segments along x, y and z whose midpoints have a winding number of at least tau.
-
-    Parameters
-    ----------
-    surface : Surface
-    hits : sequence of RayHits
-        Of the rays along x, y and z.
-    winding_threshold : float
-        tau.
-    winding_number : callable
-        Returns the winding numbers (q,) of the surface at points (q, 3) of the unit cube.
-    """
-    inside = []
-    for axis, hits_along in enumerate(hits):
-        # On a closed mesh, rays without hits are outside.
-        is_divided = (np.diff(hits_along.start) > 0) | (not surface.is_closed)
-        segments = divide_rays(hits_along, np.flatnonzero(is_divided), surface.resolution)
-        midpoints = segments.points((segments.low + segments.high) / 2, surface.resolution, axis)
-        w = np.full(len(midpoints), -np.inf)  # segments to a wall of the cube are outside
-        w[segments.has_ends] = winding_number(midpoints[segments.has_ends])
-        inside.append(segments.intervals(w >= winding_threshold))
-    return inside
-
-
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Segments of the rays of one axis, ray by ray, upward.
+    """Segments of rays of one axis, ray by ray, upward; those that end at a wall are left out.
 
     Gap c of a ray ends at the hit c (or at the wall of the cube), segment s of a gap at the
-    lattice point s (or, the last one, where the gap does). Segments that begin or end at the wall
-    lack an end.
+    lattice point s (or, the last one, where the gap does).
 
     Parameters
     ----------
-    ray, gap, number : arrays, shape (s,), int64
-    is_first, is_last, has_ends : arrays, shape (s,), bool
-        Whether a segment is the first or last of its gap, and whether it has both ends.
-    low, high : arrays, shape (s,), float64
-        Where it begins and ends along the ray.
+    axis, resolution : int
+    ray, gap, number : arrays, shape (s,), int32
+    from_hit, to_hit : arrays, shape (s,), bool
+        Whether a segment begins or ends at a hit; else at a lattice point.
+    middle : array, shape (s,), float64
+        Its midpoint along the ray.
     """
 
-    ray: NDArray[np.int64]
-    gap: NDArray[np.int64]
-    number: NDArray[np.int64]
-    is_first: NDArray[np.bool_]
-    is_last: NDArray[np.bool_]
-    has_ends: NDArray[np.bool_]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
+    axis: int
+    resolution: int
+    ray: NDArray[np.int32]
+    gap: NDArray[np.int32]
+    number: NDArray[np.int32]
+    from_hit: NDArray[np.bool_]
+    to_hit: NDArray[np.bool_]
+    middle: NDArray[np.float64]
 
-    def points(
-        self, position: NDArray[np.float64], resolution: int, axis: int
-    ) -> NDArray[np.float64]:
-        """Return the points at a position along the ray of each segment, shape (s, 3)."""
-        return points_on_rays(self.ray, position, resolution, axis)
+    def midpoints(self, which: slice | NDArray[np.intp] = np.s_[:]) -> NDArray[np.float64]:
+        """Return the midpoints of some segments in the unit cube, shape (q, 3)."""
+        return points_on_rays(self.ray[which], self.middle[which], self.resolution, self.axis)
 
     def intervals(self, is_kept: NDArray[np.bool_]) -> InsideIntervals:
         """Join consecutive kept segments within a gap."""
-        before, after = np.zeros(len(is_kept), bool), np.zeros(len(is_kept), bool)
-        before[1:], after[:-1] = is_kept[:-1], is_kept[1:]
-        begin = np.flatnonzero(is_kept & (self.is_first | ~before))
-        end = np.flatnonzero(is_kept & (self.is_last | ~after))
-        at_hit = self.is_first[begin]
-        first = self.number[begin] - ~at_hit
-        low = np.where(at_hit, self.gap[begin] - 1, NONE)
-        high = np.where(self.is_last[end], self.gap[end], NONE)
-        last = self.number[end] - self.is_last[end]
-        columns = self.ray[begin], first, last, low, high
-        return InsideIntervals(*(column.astype(np.int32) for column in columns))
+        is_next = np.zeros(len(is_kept) + 1, np.bool_)
+        is_next[1:-1] = is_kept[1:] & is_kept[:-1] & ~self.from_hit[1:]
+        is_next[1:-1] &= self.ray[1:] == self.ray[:-1]
+        begin = np.flatnonzero(is_kept & ~is_next[:-1])
+        end = np.flatnonzero(is_kept & ~is_next[1:])
+        from_hit, to_hit = self.from_hit[begin], self.to_hit[end]
+        return InsideIntervals(
+            self.ray[begin],
+            self.number[begin] - ~from_hit,
+            self.number[end] - to_hit,
+            np.where(from_hit, self.gap[begin] - 1, NONE).astype(np.int32),
+            np.where(to_hit, self.gap[end], NONE).astype(np.int32),
+        )
 
 
-def divide_rays(hits: RayHits, rays: NDArray[np.intp], resolution: int) -> Segments:
-    """Divide rays of one axis, shape (r,), ascending, at their hits and at the lattice points."""
+class RayWindingNumbers(Protocol):
+    """Winding numbers of a surface along its rays: exact ones by a treecode, or libigl's."""
+
+    def beyond_hits(self, axis: int) -> NDArray[np.int32]:
+        """Return which lattice points may be inside before a ray's first hit or beyond its last.
+
+        Shape (R * R, 2): the first and the last on each ray.
+        """
+
+    def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
+        """Return the winding numbers at the midpoints, shape (s,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PointwiseWindingNumbers:
+    """Winding numbers by a function of points (q, 3) of the unit cube that returns numbers (q,)."""
+
+    surface: Surface
+    function: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+    def beyond_hits(self, axis: int) -> NDArray[np.int32]:
+        """See `RayWindingNumbers`."""
+        resolution = self.surface.resolution
+        ends = (resolution, NONE) if self.surface.is_closed else (0, resolution)
+        return np.tile(np.int32(ends), (resolution**2, 1))
+
+    def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
+        """See `RayWindingNumbers`."""
+        return self.function(segments.midpoints())
+
+
+def inside_intervals(
+    hits: Sequence[RayHits],
+    winding_threshold: float,
+    winding_numbers: RayWindingNumbers,
+    resolution: int,
+    report: Tell = lambda done: None,
+) -> list[InsideIntervals]:
+    """Keep the segments along x, y and z whose midpoints have a winding number of at least tau."""
+
+    def keep(chunk: tuple[int, NDArray[np.intp]]) -> InsideIntervals:
+        axis, rays = chunk
+        segments = divide_rays(hits[axis], axis, resolution, rays, beyond_hits[axis])
+        w = winding_numbers.at_midpoints(segments)
+        return segments.intervals(w >= winding_threshold)
+
+    beyond_hits = [winding_numbers.beyond_hits(axis) for axis in range(3)]
+    chunks = [
+        (axis, rays)
+        for axis in range(3)
+        for rays in _chunks(hits[axis], beyond_hits[axis], resolution)
+    ]
+    kept = in_threads(keep, chunks, report)
+    inside = []
+    for axis in range(3):
+        parts = [vars(part) for (of, _), part in zip(chunks, kept, strict=True) if of == axis]
+        inside.append(
+            InsideIntervals(**{n: np.concatenate([part[n] for part in parts]) for n in parts[0]})
+        )
+    return inside
+
+
+def _chunks(
+    hits: RayHits, beyond_hits: NDArray[np.int32], resolution: int
+) -> list[NDArray[np.intp]]:
+    """Divide the rays that may be inside into chunks of at most about CHUNK segments."""
+    first, last = beyond_hits.T
     count = np.diff(hits.start)
-    lattice = (np.arange(resolution) + 0.5) / resolution
-    gaps = count[rays] + 1
-    ray = np.repeat(rays, gaps)
-    number_in_ray = np.arange(len(ray)) - np.repeat(np.cumsum(gaps) - gaps, gaps)
-    from_wall, to_wall = number_in_ray == 0, number_in_ray == count[ray]
-    gap = hits.start[ray] + number_in_ray
-    # Padded, so that the walls are no special case.
-    position = np.concatenate([hits.position, [0.0]])
-    low = np.where(from_wall, 0.0, position[gap - 1])
-    high = np.where(to_wall, 1.0, position[np.minimum(gap, len(position) - 1)])
-    first = np.where(from_wall, 0, np.searchsorted(lattice, low))
-    beyond = np.where(to_wall, resolution, np.searchsorted(lattice, high))
+    size = np.where(count > 0, count + resolution, np.maximum(last - first + 1, 0))
+    rays = np.flatnonzero(size)
+    total = np.cumsum(size[rays])
+    return np.split(rays, np.searchsorted(total, np.arange(CHUNK, total[-1:].sum(), CHUNK)))
 
-    size = beyond - first + 1
-    of = np.repeat(np.arange(len(ray)), size)
-    number = first[of] + np.arange(len(of)) - np.repeat(np.cumsum(size) - size, size)
-    is_first, is_last = number == first[of], number == beyond[of]
-    left = np.where(is_first, low[of], (number - 0.5) / resolution)
-    right = np.where(is_last, high[of], (number + 0.5) / resolution)
-    has_ends = ~((is_first & from_wall[of]) | (is_last & to_wall[of]))
-    return Segments(ray[of], gap[of], number, is_first, is_last, has_ends, left, right)
+
+def divide_rays(
+    hits: RayHits,
+    axis: int,
+    resolution: int,
+    rays: NDArray[np.intp],
+    beyond_hits: NDArray[np.int32],
+) -> Segments:
+    """Divide rays, shape (r,), of one axis at their hits and at the lattice points.
+
+    `beyond_hits`, shape (R * R, 2): as of `RayWindingNumbers`.
+    """
+    return Segments(
+        axis, resolution, *_divide(hits.start, hits.position, resolution, rays, beyond_hits)
+    )
+
+
+@compiled
+def _divide(start, position, resolution, rays, beyond_hits):
+    count = 0
+    for r in rays:
+        count += start[r + 1] - start[r] + resolution + 1
+    ray, gap = np.empty(count, np.int32), np.empty(count, np.int32)
+    number, middle = np.empty(count, np.int32), np.empty(count)
+    from_hit, to_hit = np.empty(count, np.bool_), np.empty(count, np.bool_)
+    s = 0
+    for r in rays:
+        begin, end = start[r], start[r + 1]
+        for c in range(begin, end + 1):
+            first, last, least, most = 0, resolution, 1, resolution - 1  # a wall is outside
+            if c > begin:
+                first = least = first_at_least(position[c - 1], resolution)
+            else:
+                least = max(least, beyond_hits[r, 0])
+            if c < end:
+                last = most = first_at_least(position[c], resolution)
+            else:
+                most = min(most, beyond_hits[r, 1])
+            for k in range(least, most + 1):
+                is_first, is_last = c > begin and k == first, c < end and k == last
+                low = position[c - 1] if is_first else (k - 0.5) / resolution
+                high = position[c] if is_last else (k + 0.5) / resolution
+                ray[s], gap[s], number[s] = r, c, k
+                from_hit[s], to_hit[s], middle[s] = is_first, is_last, 0.5 * (low + high)
+                s += 1
+    return ray[:s], gap[:s], number[:s], from_hit[:s], to_hit[:s], middle[:s]

@@ -80,14 +80,17 @@ class WindingNumbers:
     """
 
     def __init__(self, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
-        self._surface = vertices, faces, *_bin_faces(vertices, faces), find_boundary(faces)
+        self._mesh, self._boundary = (vertices, faces), find_boundary(faces)
+        self._bins = _bin_faces(vertices, faces)
 
     def at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the winding number at points (q, 3) of the unit cube, shape (q,)."""
-        numbers = in_threads(
-            lambda part: _number_at(points[part], *self._surface), parts(len(points))
-        )
-        return np.concatenate([np.empty(0), *numbers])
+
+        def number_at(part: slice) -> NDArray[np.float64]:
+            ahead = _crossings_ahead(points[part], *self._mesh, *self._bins)
+            return ahead + boundary_angles(self._mesh[0], self._boundary, points[part])
+
+        return np.concatenate([np.empty(0), *in_threads(number_at, parts(len(points)))])
 
 
 def _bin_faces(vertices, faces):
@@ -115,11 +118,10 @@ def _list_faces(low, high, cells, cursor, listed):
 
 
 @compiled
-def _number_at(points, vertices, faces, cells, start, listed, boundary):
-    number = np.empty(len(points))
+def _crossings_ahead(points, vertices, faces, cells, start, listed):
+    ahead = np.zeros(len(points))
     for q in range(len(points)):
         pu, pv, height = points[q, 0], points[q, 1], points[q, 2]
-        chi = 0
         if 0 <= pu <= 1 and 0 <= pv <= 1:
             cell = min(int(pu * cells), cells - 1) * cells + min(int(pv * cells), cells - 1)
             for k in range(start[cell], start[cell + 1]):
@@ -127,13 +129,21 @@ def _number_at(points, vertices, faces, cells, start, listed, boundary):
                 if not low_v <= pv < high_v:
                     continue
                 if height_between(low_v, low_a, high_v, high_a, pv) > height:
-                    chi += side
-        number[q] = chi + boundary_angle(vertices, boundary, pu, pv, height)
-    return number
+                    ahead[q] += side
+    return ahead
+
+
+@compiled
+def boundary_angles(vertices, boundary, points):
+    """Return the winding numbers at points (q, 3) less the crossings ahead, shape (q,)."""
+    angles = np.empty(len(points))
+    for q in range(len(points)):
+        angles[q] = _boundary_angle(vertices, boundary, points[q, 0], points[q, 1], points[q, 2])
+    return angles
 
 
 @no_refcount
-def boundary_angle(vertices, boundary, pu, pv, height):
+def _boundary_angle(vertices, boundary, pu, pv, height):
     """Sum the solid angles of the boundary edges over 4 pi: the winding number less chi.
 
     The ray runs from (pu, pv, height) along the third coordinate of the vertices.

@@ -1,42 +1,29 @@
-"""Inside intervals by libigl's fast winding number, for comparison.
+"""libigl's fast winding number, for comparison.
 
-The fast winding number is a truncated series: segments whose number is within about 1e-2 of tau
-may be decided otherwise.
+It is a truncated series: segments whose number is within about 1e-2 of tau may be decided
+otherwise.
 """
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..ray_tracers import optional_library
-from ..rays import RayHits
-from ..segments import InsideIntervals, inside_intervals
 from ..surface import Surface
 
 
 def fast_winding_numbers(surface: Surface, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Approximate the winding number at points (k, 3), after Barill et al. 2018."""
-    igl = optional_library("igl", 'winding="fast"', "libigl")
-    if len(points) == 0:
-        return np.empty(0)
-    faces = surface.faces.astype(np.int64)
-    numbers: NDArray[np.float64] = igl.fast_winding_number(surface.vertices, faces, points)
-    return numbers
-
-
-def fast_intervals(
-    surface: Surface, hits: Sequence[RayHits], winding_threshold: float
-) -> list[InsideIntervals]:
-    """Keep segments as `inside_intervals` does, by libigl's fast winding number.
+    """Approximate the winding number at points (k, 3).
 
     References
     ----------
     Barill, Dickson, Schmidt, Levin & Jacobson, "Fast winding numbers for soups and
     clouds", 2018.
     """
-    winding_number = partial(fast_winding_numbers, surface)
-    return inside_intervals(surface, hits, winding_threshold, winding_number)
+    igl = optional_library("igl", 'winding="fast"', "libigl")
+    if len(points) == 0:
+        return np.empty(0)
+    faces = surface.faces.astype(np.int64)
+    numbers: NDArray[np.float64] = igl.fast_winding_number(surface.vertices, faces, points)
+    return numbers

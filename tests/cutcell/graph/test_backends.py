@@ -1,6 +1,7 @@
 """Embree, Open3D and the fast winding number find what the exact kernels find."""
 
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ from cutcell import MissingLibraryError, TriangleMesh
 from cutcell.geometry.weld import weld
 from cutcell.graph import ray_tracers
 from cutcell.graph.rays import AXES, cast_all_rays, cast_rays
-from cutcell.graph.segments import inside_intervals
+from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.exact import WindingNumbers
-from cutcell.graph.winding.libigl import fast_intervals
+from cutcell.graph.winding.libigl import fast_winding_numbers
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -113,11 +114,22 @@ def prepared(vertices, faces, resolution):
     return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
 
 
+def intervals(surface, hits, tau, function):
+    """Return the intervals inside by a function of points that returns winding numbers."""
+    numbers = PointwiseWindingNumbers(surface, function)
+    return inside_intervals(hits, tau, numbers, surface.resolution)
+
+
+def fast_intervals(surface, hits, tau):
+    """Return the intervals inside by libigl's winding numbers."""
+    return intervals(surface, hits, tau, partial(fast_winding_numbers, surface))
+
+
 def both_runs(mesh, tau):
     """Return the intervals along each axis as sets: by exact winding numbers, and by libigl's."""
     surface, hits = prepared(*mesh, 24)
     exact = WindingNumbers(surface.vertices, surface.faces)
-    plain = inside_intervals(surface, hits, tau, exact.at)
+    plain = intervals(surface, hits, tau, exact.at)
     pairs = zip(plain, fast_intervals(surface, hits, tau), strict=True)
     return [
         [set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in pair]

@@ -1,4 +1,4 @@
-"""The treecode keeps the segments that the plain algorithm 1 keeps by exact winding numbers."""
+"""By the treecode, algorithm 1 keeps the segments that it keeps by exact winding numbers."""
 
 import tracemalloc
 from pathlib import Path
@@ -10,16 +10,14 @@ from scipy.spatial.transform import Rotation
 import cutcell
 from cutcell import TooLargeError, TriangleMesh
 from cutcell.graph.rays import cast_all_rays
-from cutcell.graph.segments import inside_intervals
+from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.exact import WindingNumbers
-from cutcell.graph.winding.treecode import intervals
 from cutcell.graph.winding.treecode.caps import smallest_caps
 from cutcell.graph.winding.treecode.cells import MAX_NEAR, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
-from cutcell.graph.winding.treecode.intervals import treecode_intervals
-from cutcell.graph.winding.treecode.queries import query_points
+from cutcell.graph.winding.treecode.winding_numbers import TreecodeWindingNumbers
 from tests import meshes
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -85,10 +83,16 @@ def prepared(vertices, faces, resolution):
     return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
 
 
+def treecode_intervals(surface, hits, tau, report=lambda done: None):
+    """Return the intervals by the winding numbers of the treecode."""
+    numbers = TreecodeWindingNumbers(surface, hits, tau)
+    return inside_intervals(hits, tau, numbers, surface.resolution, report)
+
+
 def check_against_plain(surface, hits, tau):
-    """Compare the intervals with those of the plain version."""
-    exact = WindingNumbers(surface.vertices, surface.faces)
-    expected = inside_intervals(surface, hits, tau, exact.at)
+    """Compare the intervals with those by winding numbers at all midpoints."""
+    exact = PointwiseWindingNumbers(surface, WindingNumbers(surface.vertices, surface.faces).at)
+    expected = inside_intervals(hits, tau, exact, surface.resolution)
     for one, other in zip(treecode_intervals(surface, hits, tau), expected, strict=True):
         # Without length, the midpoint is on the surface, where either number is right.
         rows, plain = (
@@ -138,25 +142,16 @@ def test_cells_that_do_not_fit_in_memory_are_refused(monkeypatch):
         treecode_intervals(surface, hits, 0.5)
 
 
-def test_queries_are_answered_some_at_a_time_with_the_same_result(monkeypatch):
+def test_many_chunks_give_what_one_does(monkeypatch):
     surface, hits = prepared(*apart(0.7), RESOLUTION)
-    monkeypatch.setattr("cutcell.graph.rays.STRIP_WORK", 1000)
     expected = treecode_intervals(surface, hits, 0.5)
-    sizes, reports = [], []
-
-    def counted(expansions, clusters, row, queries, tell):
-        sizes.append(len(queries))
-        return query_points(expansions, clusters, row, queries, tell)
-
-    monkeypatch.setattr(intervals, "query_points", counted)
-    monkeypatch.setattr(intervals, "MAX_QUERIES", 1000)
+    reports = []
+    monkeypatch.setattr("cutcell.graph.segments.CHUNK", 100)
     again = treecode_intervals(surface, hits, 0.5, reports.append)
     for one, other in zip(again, expected, strict=True):
         for name, values in vars(one).items():
             np.testing.assert_array_equal(values, getattr(other, name))
-    assert len(sizes) > 3
-    assert max(sizes) < sum(sizes) / 3
-    assert reports == sorted(reports)
+    assert len(reports) > 20
     assert reports[-1] == 1
 
 

@@ -7,7 +7,7 @@ from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.treecode.caps import cap_holes
 from cutcell.graph.winding.treecode.cells import BLOCK, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
-from cutcell.graph.winding.treecode.queries import UNDECIDED, query_points
+from cutcell.graph.winding.treecode.queries import winding_numbers_of_caps
 from tests import meshes, naive
 
 RESOLUTION, TAU = 32, 0.5
@@ -44,11 +44,11 @@ def classified(vertices, faces):
 
 
 def some_queries(classes, each, rng):
-    """Choose ambiguous blocks, and queries in the cells of each; shuffled."""
+    """Choose ambiguous blocks, points in the cells of each, and margins; shuffled."""
     row = np.unique(classes.fine[classes.fine >= 0])
     row = rng.permutation(np.repeat(rng.permutation(row)[:40], each)).astype(np.int32)
     points = classes.expansions.centre[row] + rng.uniform(-2, 2, (len(row), 3)) / RESOLUTION
-    return row, np.column_stack([points, rng.integers(-1, 3, len(row)) - TAU])
+    return row, points, rng.integers(-1, 3, len(row)) - TAU
 
 
 @pytest.mark.parametrize("each", [1, 17])
@@ -58,31 +58,19 @@ def test_results_are_those_of_the_exact_sum(name, each):
     low, side = vertices.min(axis=0), np.ptp(vertices, axis=0).max()
     vertices = (vertices - low) / side * 0.9 + 0.05
     caps, clusters, classes = classified(vertices, faces)
-    row, queries = some_queries(classes, each, np.random.default_rng(1))
+    row, points, margin = some_queries(classes, each, np.random.default_rng(1))
     assert len(row) >= each
-    told = []
-    found = query_points(classes.expansions, clusters, row, queries, told.append)
-    assert told[-1] == 1
-    inside = queries[:, 3] - naive.winding_number(caps.vertices, caps.faces, queries[:, :3])
-    is_plain = np.abs(inside) > 1e-6
+    values = winding_numbers_of_caps(classes.expansions, clusters, row, points, margin)
+    expected = naive.winding_number(caps.vertices, caps.faces, points)
+    distance = np.abs(margin - expected)
+    is_plain = distance > 1e-6
     assert is_plain.mean() > 0.9
-    np.testing.assert_array_equal(found[is_plain], inside[is_plain] > 0)
+    assert (np.abs(values - expected) < distance)[is_plain].all()
     # The result of a query does not depend on the others.
     some = np.flatnonzero(np.random.default_rng(2).random(len(row)) < 0.3)
-    alone = query_points(classes.expansions, clusters, row[some], queries[some])
-    np.testing.assert_array_equal(alone, found[some])
-
-
-def test_many_portions_give_what_one_does(monkeypatch):
-    vertices, faces = torn_ball(0.2)
-    _, clusters, classes = classified(vertices, faces)
-    row, queries = some_queries(classes, 300, np.random.default_rng(1))  # more than a batch each
-    found = query_points(classes.expansions, clusters, row, queries)
-    told = []
-    monkeypatch.setattr("cutcell.graph.winding.treecode.queries.PORTION", 1)
-    again = query_points(classes.expansions, clusters, row, queries, told.append)
-    np.testing.assert_array_equal(again, found)
-    assert len(told) > 20
+    queries = row[some], points[some], margin[some]
+    alone = winding_numbers_of_caps(classes.expansions, clusters, *queries)
+    np.testing.assert_array_equal(alone > margin[some], values[some] > margin[some])
 
 
 def test_a_midpoint_on_a_cap_is_left_to_the_exact_sum():
@@ -94,13 +82,12 @@ def test_a_midpoint_on_a_cap_is_left_to_the_exact_sum():
     row = np.where(block >= 0, classes.fine[block, *(cell.T % BLOCK)], -1)
     assert (row >= 0).sum() > 100
     # The winding number of the triangle itself is there one half, of either sign.
-    queries = np.column_stack([spots, np.full(len(spots), 0.1)])[row >= 0]
-    found = query_points(classes.expansions, clusters, row[row >= 0].astype(np.int32), queries)
-    assert (found == UNDECIDED).all()
+    queries = row[row >= 0].astype(np.int32), spots[row >= 0], np.full((row >= 0).sum(), 0.1)
+    assert np.isnan(winding_numbers_of_caps(classes.expansions, clusters, *queries)).all()
 
 
 def test_no_queries_have_no_results():
     vertices, faces = torn_ball(0.2)
     _, clusters, classes = classified(vertices, faces)
-    nothing = np.zeros(0, np.int32), np.zeros((0, 4))
-    assert len(query_points(classes.expansions, clusters, *nothing)) == 0
+    nothing = np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros(0)
+    assert len(winding_numbers_of_caps(classes.expansions, clusters, *nothing)) == 0

@@ -12,10 +12,6 @@ ambiguous: cells near the rims of holes, and near the surfaces w_caps = k - tau.
 point queries, see `queries.py`. Clusters far from a block are far from its halves, too, and their
 expansion is translated from block to half; only near clusters are visited again.
 
-In a block that a cap crosses, w_caps jumps by one across the cap, and so does chi: chi - w_caps is
-smooth. The block's expansion still gives it, up to a whole number that is found once for each ray
-through the block, see `intervals.py`.
-
 Of a soup whose triangles are all apart, the caps are the triangles turned round: chi is 0
 everywhere, and the clusters decide all.
 """
@@ -32,7 +28,7 @@ from ....runtime.compiled import compiled, copy_to
 from ....runtime.memory import check_room
 from ....runtime.progress import Tell
 from ....runtime.threads import in_threads
-from ...rays import grown, in_space
+from ...rays import grown
 from .clusters import ROOT, Clusters
 from .expansion import (
     ERROR,
@@ -57,9 +53,9 @@ WORTH = 20
 """Ambiguous midpoints for which it pays to halve a block."""
 TOLERANCE = 5e-3
 """Clusters of a larger error in a block are split."""
-CROSSED, COUNT = SIZE + 3, SIZE + 4
-"""Columns of an expansion's row, after coefficients and centre: `LocalExpansions.is_crossed`, and
-the number of near clusters."""
+COUNT = SIZE + 3
+"""The column of an expansion's row, after coefficients and centre, for the number of near
+clusters."""
 DEPTH = 12
 """More often blocks are never halved."""
 MAX_NEAR = 64
@@ -121,40 +117,9 @@ def classify_cells(
         rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
-    columns = (0, SIZE), (SIZE, CROSSED)
+    columns = (0, SIZE), (SIZE, COUNT)
     local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
-    is_crossed = expanded[:, CROSSED] > 0
-    return CellClasses(coarse, fine, LocalExpansions(centre, local, is_crossed, start, near))
-
-
-@compiled(inline="always")
-def required_crossings(total, error):
-    """Round up tau plus the winding number of the caps; AMBIGUOUS if the error leaves it open."""
-    required = np.ceil(total - error)
-    return np.int64(required) if required == np.ceil(total + error) else AMBIGUOUS
-
-
-@compiled(inline="always")
-def class_at(classes, axis, ray, cell, stop):
-    """Return the class of a cell on a ray, and where the cells of this class end on the ray.
-
-    Looks at cells of the same block only, and at none from `stop` on.
-    """
-    x, y, z = in_space(axis, ray[0], ray[1], cell)
-    stop = min(stop, (cell // BLOCK + 1) * BLOCK)
-    cell_class = classes.coarse[x // BLOCK, y // BLOCK, z // BLOCK]
-    if cell_class < 0:
-        return cell_class, max(stop, cell + 1)
-    block = classes.fine[cell_class]
-    x, y, z = x % BLOCK, y % BLOCK, z % BLOCK
-    cell_class = block[x, y, z]
-    until = cell + 1
-    while until < stop:
-        x, y, z = x + (axis == 0), y + (axis == 1), z + (axis == 2)
-        if block[x, y, z] != cell_class:
-            break
-        until += 1
-    return cell_class, until
+    return CellClasses(coarse, fine, LocalExpansions(centre, local, start, near))
 
 
 @compiled
@@ -162,7 +127,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     """Write the classes of the blocks in a cube of `top` cells into `coarse`.
 
     Returns which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
-    expansions that these name: coefficients, centre, CROSSED, COUNT; and the near clusters.
+    expansions that these name: coefficients, centre, COUNT; and the near clusters.
     """
     blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
@@ -190,8 +155,8 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        is_crossed = add_clusters(clusters, close, local, q, reach, TOLERANCE)
-        cell_class = _class_of(local, is_crossed, half, size, tau)
+        add_clusters(clusters, close, local, q, reach, TOLERANCE)
+        cell_class = _class_of(local, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
         if size >= BLOCK and cell_class < 0:
             coarse[a : a + wide, b : b + wide, c : c + wide] = cell_class
@@ -212,7 +177,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
             copy_to(far[level] if cell_class == AMBIGUOUS else local, row)
             row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
-            row[CROSSED], row[COUNT] = is_crossed and cell_class != AMBIGUOUS, 0
+            row[COUNT] = 0
             if cell_class == AMBIGUOUS:
                 close = near[level, : nears[level]]
                 row[COUNT] = len(close)
@@ -247,15 +212,15 @@ def _halve(waiting, count):
 
 
 @compiled
-def _class_of(local, is_crossed, half, size, tau):
+def _class_of(local, half, size, tau):
     """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
     error = local[ERROR] + ROUNDING
     if error >= 0.5:
         return AMBIGUOUS
     slope = variation(local, half)
-    required = required_crossings(tau + local[0], slope + error)
-    if required < AMBIGUOUS:
-        return 0 if is_crossed else CONSTANT + required
+    required = np.ceil(tau + local[0] - slope - error)
+    if required == np.ceil(tau + local[0] + slope + error):
+        return CONSTANT + np.int64(required)
     # About error / slope of the midpoints on three axes are closer to the threshold than the error.
     if 3 * size**3 * min(error, slope) > WORTH * slope and size > SMALLEST:
         return AMBIGUOUS

@@ -51,9 +51,6 @@ class LocalExpansions(NamedTuple):
     centre : array, shape (n, 3)
     local : array, shape (n, SIZE)
         Of all caps, or of all but those of the near clusters.
-    is_crossed : array, shape (n,), bool
-        Whether a cap crosses the ball around the block: then `local`, of all caps, is valid up to
-        whole numbers.
     start : array, shape (n + 1,), int64
         The near clusters are near[start[i]] to near[start[i + 1] - 1].
     near : array, int32
@@ -61,7 +58,6 @@ class LocalExpansions(NamedTuple):
 
     centre: NDArray[np.float64]
     local: NDArray[np.float64]
-    is_crossed: NDArray[np.bool_]
     start: NDArray[np.int64]
     near: NDArray[np.int32]
 
@@ -72,14 +68,6 @@ def evaluate(local, x, y, z):
     linear = local[1] * x + local[2] * y + local[3] * z
     square = local[4] * (x * x - z * z) + local[5] * (y * y - z * z)
     return local[0] + linear + square / 2 + local[6] * x * y + local[7] * x * z + local[8] * y * z
-
-
-@compiled(inline="always")
-def value_at(expansions, row, point):
-    """Return the winding number of the caps at a point of a block, and its error bound."""
-    x, y, z = between(expansions.centre[row], point)
-    local = expansions.local[row]
-    return evaluate(local, x, y, z), local[ERROR] + ROUNDING
 
 
 @compiled(inline="always")
@@ -126,11 +114,7 @@ def add_far_clusters(clusters, among, local, near, q, reach):
 
 @no_refcount
 def add_clusters(clusters, among, local, q, reach, tolerance):
-    """Add clusters to the local expansion of a ball; stop once its error is useless.
-
-    Shapes: local (SIZE,).
-    """
-    is_crossed = False
+    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless."""
     leaves = len(clusters.start) - 1
     for top in among:
         k, end = top, next_cluster(top)
@@ -144,24 +128,21 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
                 k *= 2
                 continue
             else:
-                is_crossed |= _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
+                _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
             if local[ERROR] > USELESS:
-                return is_crossed
+                return
             k = next_cluster(k)
-    return is_crossed
 
 
 @no_refcount
 def _add_caps(clusters, leaf, local, q, reach, may_cross):
-    """Add the caps of a leaf of the tree one by one; return whether one crosses the ball."""
-    is_crossed = False
+    """Add the caps of a leaf of the tree one by one; the error is infinite if one crosses."""
     for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
         rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-        is_crossed |= _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
+        _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
         if local[ERROR] > USELESS:
-            break
+            return
         local[0] += _winding_number(rim, clusters.apex[loop], q)
-    return is_crossed
 
 
 @compiled(inline="always")
@@ -208,8 +189,7 @@ def _winding_number(rim, apex, q):
 
 @no_refcount
 def _add_gradient(local, rim, apex, q, reach, may_cross):
-    """Add the gradient of a cap, and its error; return whether the cap crosses the ball."""
-    is_crossed = False
+    """Add the gradient of a cap, and its error: infinite if the cap crosses the ball."""
     c = between(q, apex)
     b = between(q, rim[len(rim) - 1])
     lb = length(b)
@@ -222,19 +202,16 @@ def _add_gradient(local, rim, apex, q, reach, may_cross):
         gap = (la + lb - side) / 2 - reach
         if gap < side:
             gap = _distance_to_edge(a, b) - reach
-        if gap <= 0:
+        if gap <= 0 or (may_cross and _is_within(b, a, c, reach)):
             local[ERROR] = np.inf
-            return True
+            return
         local[ERROR] += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
         if local[ERROR] > USELESS:
-            break
+            return
         g = _biot_savart(b, a, lb, la)
         local[1] += g[0]
         local[2] += g[1]
         local[3] += g[2]
-        if may_cross and not is_crossed:
-            is_crossed = _is_within(b, a, c, reach)
-    return is_crossed
 
 
 @compiled(inline="always")

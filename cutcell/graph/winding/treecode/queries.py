@@ -8,16 +8,11 @@ threshold; and with all clusters, where the error of the local expansion is too 
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.counting_sort import counting_sort
 from ....geometry.vectors import between, length
 from ....runtime.compiled import no_refcount
-from ....runtime.progress import Tell
-from ....runtime.threads import in_threads
 from .clusters import ROOT, Clusters
 from .expansion import ERROR, ROUNDING, LocalExpansions, evaluate
 from .solid_angles import (
@@ -31,10 +26,6 @@ from .solid_angles import (
     caps_winding_numbers,
 )
 
-OUTSIDE, INSIDE, UNDECIDED = 0, 1, 2
-"""Results. Undecided queries are left to the exact formula, `exact.boundary_angle`."""
-SLACK = 3
-"""The column of a query after the midpoint's coordinates."""
 FIRST, LAST = 1e-2, 1e-9
 """Tolerance of a cluster's error: at first, and below which the exact formula is faster."""
 STEP = 1e-2
@@ -43,82 +34,66 @@ SAFETY = 0.7
 """The share of a query's margin that the next error is to be."""
 HOPELESS = 0.8
 """Share of the margin: a local expansion with a larger error is not used again."""
-PORTION = 2_500_000
-"""Midpoints times caps that are evaluated in a few hundredths of a second."""
 
 
-def query_points(
+def winding_numbers_of_caps(
     expansions: LocalExpansions,
     clusters: Clusters,
     row: NDArray[np.int32],
-    queries: NDArray[np.float64],
-    report: Tell = lambda done: None,
-) -> NDArray[np.uint8]:
-    """Decide whether midpoints are inside.
+    points: NDArray[np.float64],
+    margin: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Approximate the winding number of the caps, with an error below its distance from `margin`.
 
-    Shapes: row (q,), queries (q, 4); returns (q,).
+    It is NaN where that would take longer than the exact formula.
+
+    Shapes: row (q,), points (q, 3), margin (q,); returns (q,).
     """
-    start, order = counting_sort(row, len(expansions.centre))
-    results = np.empty(len(row), np.uint8)
-    every = np.array([ROOT], np.int32)
-
-    def evaluate_portion(part: tuple[int, int]) -> None:
-        points = np.empty(WORKSPACE)
-        _query(expansions, clusters, queries, row, start, order, every, *part, points, results)
-
-    in_threads(evaluate_portion, _portions(clusters, row, start, order), report)
-    return results
-
-
-def _portions(clusters, row, start, order):
-    """Divide the sorted queries into portions of limited time that do not divide batches."""
-    begins = np.flatnonzero((np.arange(len(order)) - start[row[order]]) % BATCH == 0)
-    size = max(BATCH, PORTION // len(clusters.apex))
-    targets = np.arange(0, begins.max(initial=-1) + 1, size)
-    bounds = np.unique(begins[np.searchsorted(begins, targets)])
-    return list(pairwise([*bounds.tolist(), len(order)]))
+    order, values = np.argsort(row, kind="stable"), np.empty(len(row))
+    every, workspace = np.array([ROOT], np.int32), np.empty(WORKSPACE)
+    _query(expansions, clusters, points, margin, row, order, every, workspace, values)
+    return values
 
 
 @no_refcount
-def _query(expansions, clusters, queries, row, start, order, every, first, last, points, results):
-    """Decide order[first:last], batch by batch; `order` is permuted within batches.
-
-    `every` holds the cluster of all caps; `points` is a workspace.
-    """
-    while first < last:
-        block = row[order[first]]
-        end = min(first + BATCH, start[block + 1])
-        batch = order[first:end]
-        _query_batch(expansions, clusters, queries, block, batch, every, points, results)
+def _query(expansions, clusters, points, margin, row, order, every, workspace, values):
+    """Evaluate queries batch by batch; `every` holds the cluster of all caps."""
+    first = 0
+    while first < len(order):
+        end = first + 1
+        while end < min(first + BATCH, len(order)) and row[order[end]] == row[order[first]]:
+            end += 1
+        queries = points, margin, order[first:end]
+        _query_batch(expansions, clusters, row[order[first]], queries, every, workspace, values)
         first = end
 
 
 @no_refcount
-def _query_batch(expansions, clusters, queries, row, open_queries, every, points, results):
-    """Decide at most BATCH queries of one block."""
+def _query_batch(expansions, clusters, row, queries, every, workspace, values):
+    """Evaluate at most BATCH queries of one block; those that are left open are permuted."""
+    points, margin, open_queries = queries
     centre, local = expansions.centre[row], expansions.local[row]
     near = expansions.near[expansions.start[row] : expansions.start[row + 1]]
-    use_local, tolerance = not expansions.is_crossed[row], FIRST
+    use_local, tolerance = True, FIRST
     while len(open_queries) and tolerance > LAST:
-        count, middle, reach = _load(open_queries, queries, points)
+        count, middle, reach = _load(open_queries, points, workspace)
         local_error = (local[ERROR] if use_local else 0.0) + ROUNDING
         among = near if use_local else every
-        error = caps_winding_numbers(clusters, among, middle, reach, tolerance, points, count)
+        error = caps_winding_numbers(clusters, among, middle, reach, tolerance, workspace, count)
         left, least = 0, np.inf
         for i in range(len(open_queries)):
-            q, is_clear = open_queries[i], points[CLEAR + i] > 0
-            margin = queries[q, SLACK] - points[VALUE + i]
+            q, is_clear = open_queries[i], workspace[CLEAR + i] > 0
+            values[q] = workspace[VALUE + i]
             if use_local:
-                x, y, z = between(centre, queries[q])
-                margin -= evaluate(local, x, y, z)
-            results[q] = INSIDE if margin > 0 else OUTSIDE
-            margin = abs(margin)
-            if not is_clear or margin <= local_error + error:
-                results[q] = UNDECIDED
-                if is_clear and (use_local or margin > local_error):
+                x, y, z = between(centre, points[q])
+                values[q] += evaluate(local, x, y, z)
+            distance = abs(margin[q] - values[q])
+            if not is_clear or distance <= local_error + error:
+                values[q] = np.nan
+                if is_clear and (use_local or distance > local_error):
                     open_queries[left] = q
                     left += 1
-                    least = min(least, margin)
+                    least = min(least, distance)
         open_queries = open_queries[:left]
         if use_local and local_error > HOPELESS * least:
             use_local, tolerance = False, min(max((SAFETY * least / 2) ** 2, 1e-4), FIRST)
@@ -128,19 +103,19 @@ def _query_batch(expansions, clusters, queries, row, open_queries, every, points
 
 
 @no_refcount
-def _load(which, queries, points):
+def _load(which, points, workspace):
     """Load midpoints into the workspace, rounded up to full vectors; return a ball around them."""
     count = len(which)
     x = y = z = 0.0
     for q in which:
-        x += queries[q, 0] / count
-        y += queries[q, 1] / count
-        z += queries[q, 2] / count
+        x += points[q, 0] / count
+        y += points[q, 1] / count
+        z += points[q, 2] / count
     reach = 0.0
     for q in which:
-        reach = max(reach, length(between((x, y, z), queries[q])))
+        reach = max(reach, length(between((x, y, z), points[q])))
     filled = -(-count // SIMD_WIDTH) * SIMD_WIDTH
     for i in range(filled):
         q = which[min(i, count - 1)]
-        points[i], points[Y + i], points[Z + i] = queries[q, 0], queries[q, 1], queries[q, 2]
+        workspace[i], workspace[Y + i], workspace[Z + i] = points[q, 0], points[q, 1], points[q, 2]
     return filled, (x, y, z), reach

@@ -1,0 +1,146 @@
+"""Winding numbers at the midpoints of segments, as exact as `w >= tau` needs them.
+
+On a closed mesh the winding number is the signed count of crossings ahead. Holes are closed by
+caps, whose own winding number is subtracted: see `cells.py` for where that takes no query, and
+`queries.py` for where it does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....runtime.compiled import compiled
+from ....runtime.progress import Tell, share_of
+from ...rays import AXES, RayHits, cast_all_rays, in_space
+from ...segments import NONE, Segments
+from ...surface import Surface
+from ..exact import boundary_angles
+from .caps import smallest_caps
+from .cells import BLOCK, CONSTANT, classify_cells
+from .clusters import build_tree
+from .queries import winding_numbers_of_caps
+
+DECIDED = -1
+BITS = BLOCK.bit_length() - 1
+"""log2 of BLOCK."""
+
+
+class TreecodeWindingNumbers:
+    """Winding numbers of a surface along its rays that are on the right side of tau.
+
+    Parameters
+    ----------
+    surface : Surface
+    hits : sequence of RayHits
+        Along x, y and z.
+    winding_threshold : float
+        tau.
+    report : callable
+    """
+
+    def __init__(
+        self,
+        surface: Surface,
+        hits: Sequence[RayHits],
+        winding_threshold: float,
+        report: Tell = lambda done: None,
+    ) -> None:
+        self._surface, self._threshold = surface, winding_threshold
+        self._crossings = [
+            np.append(np.int32(0), np.cumsum(along.sign, dtype=np.int32)) for along in hits
+        ]
+        self._hits = hits
+        caps = smallest_caps(surface.vertices, surface.boundary)
+        report(0.1)
+        self._cap_hits = cast_all_rays(
+            caps.vertices, caps.faces, surface.resolution, share_of(report, 0.1, 0.4)
+        )
+        self._clusters = build_tree(caps)
+        self._classes = classify_cells(
+            self._clusters, surface.resolution, winding_threshold, share_of(report, 0.4, 1)
+        )
+
+    def beyond_hits(self, axis: int) -> NDArray[np.int32]:
+        """Return which lattice points may be inside before a ray's first hit or beyond its last."""
+        resolution, coarse = self._surface.resolution, self._classes.coarse
+        may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
+        first = BLOCK * may_be_inside.argmax(axis=2)
+        last = BLOCK * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
+        is_outside = ~may_be_inside.any(axis=2)
+        first[is_outside], last[is_outside] = resolution, NONE
+        block = np.arange(resolution) // BLOCK
+        points = np.stack([first, last], axis=2)[np.ix_(block, block)].reshape(-1, 2)
+        points[np.diff(self._cap_hits[axis].start) > 0] = 0, resolution
+        return points.astype(np.int32)
+
+    def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
+        """Return numbers, shape (s,), that are at least tau exactly where the winding number is.
+
+        Where no query is needed, it is rounded down to tau plus a whole number.
+        """
+        axis, ray, gap = segments.axis, segments.ray, segments.gap
+        start, crossings = self._hits[axis].start, self._crossings[axis]
+        if self._surface.is_closed:
+            return (crossings[start[ray + 1]] - crossings[gap]).astype(np.float64)
+        caps = self._cap_hits[axis]
+        w, row = _by_class(
+            (axis, segments.resolution, ray, gap, segments.middle),
+            (start, crossings),
+            (caps.start, caps.position, caps.sign),
+            self._classes.coarse,
+            self._classes.fine,
+            self._threshold,
+        )
+        query = np.flatnonzero(row != DECIDED)
+        margin = w[query] - self._threshold
+        w[query] -= winding_numbers_of_caps(
+            self._classes.expansions, self._clusters, row[query], segments.midpoints(query), margin
+        )
+        left = query[np.isnan(w[query])]
+        ahead = crossings[start[ray[left] + 1]] - crossings[gap[left]]
+        w[left] = ahead + self._boundary_angles(axis, segments.midpoints(left))
+        return w
+
+    def _boundary_angles(self, axis: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the winding numbers at points (q, 3) less the crossings ahead, exactly."""
+        order = list(AXES[axis])
+        vertices = np.ascontiguousarray(self._surface.vertices[:, order])
+        angles = boundary_angles(vertices, self._surface.boundary, points[:, order])
+        return -angles if axis == 1 else angles  # (x, z, y) is left-handed
+
+
+@compiled
+def _by_class(segments, hits, cap_hits, coarse, fine, tau):
+    """Return winding numbers where the class of the cell decides, and the rows of expansions.
+
+    Where there is a query, the row is not DECIDED and the number is that of the capped mesh.
+    """
+    axis, resolution, ray, gap, middle = segments
+    end, crossings = hits
+    start, position, sign = cap_hits
+    w, row = np.empty(len(ray)), np.empty(len(ray), np.int32)
+    i = j = cap = caps_ahead = 0
+    for s in range(len(ray)):
+        r = ray[s]
+        if s == 0 or r != ray[s - 1]:
+            i, j = r // resolution, r % resolution
+            cap, caps_ahead = start[r], 0
+            for c in range(start[r], start[r + 1]):
+                caps_ahead += sign[c]
+        while cap < start[r + 1] and position[cap] <= middle[s]:
+            caps_ahead -= sign[cap]
+            cap += 1
+        cell = min(int(middle[s] * resolution), resolution - 1)
+        x, y, z = in_space(axis, i, j, cell)
+        cell_class = coarse[x >> BITS, y >> BITS, z >> BITS]
+        if cell_class >= 0:
+            cell_class = fine[cell_class, x % BLOCK, y % BLOCK, z % BLOCK]
+        ahead = crossings[end[r + 1]] - crossings[gap[s]] + caps_ahead
+        if cell_class < 0:
+            w[s], row[s] = tau + (ahead + CONSTANT - cell_class), DECIDED
+        else:
+            w[s], row[s] = ahead, cell_class
+    return w, row
