@@ -6,9 +6,9 @@ import numpy as np
 
 from cutcell import TriangleMesh
 from cutcell.graph.rays import RayHits, cast_all_rays
-from cutcell.graph.segments import InsideIntervals, divide_rays
+from cutcell.graph.segments import NONE, InsideIntervals, divide_rays, inside_intervals
 from cutcell.graph.surface import Surface, prepare_surface
-from cutcell.graph.winding.treecode.intervals import treecode_intervals
+from cutcell.graph.winding.treecode.winding_numbers import TreecodeWindingNumbers
 
 
 def prepare(mesh: TriangleMesh, resolution: int) -> Surface:
@@ -23,17 +23,18 @@ def cast(prepared: Surface) -> list[RayHits]:
 
 def decide(prepared: Surface, hits: list[RayHits], threshold: float = 0.5) -> list[InsideIntervals]:
     """Decide which segments are inside, along all three axes."""
-    return treecode_intervals(prepared, hits, threshold)
+    numbers = TreecodeWindingNumbers(prepared, hits, threshold)
+    return inside_intervals(hits, threshold, numbers, prepared.resolution)
 
 
 def midpoints(prepared: Surface, hits: list[RayHits]) -> np.ndarray:
     """List the midpoints between the first and last hit of each ray, shape (q, 3)."""
-    points = []
-    for axis, along in enumerate(hits):
-        rays = np.flatnonzero(np.diff(along.start))
-        segments = divide_rays(along, rays, prepared.resolution)
-        begins, ends = along.start[segments.ray], along.start[segments.ray + 1]
-        between = (segments.gap > begins) & (segments.gap < ends)
-        middle = (segments.low + segments.high) / 2
-        points.append(segments.points(middle, prepared.resolution, axis)[between])
-    return np.concatenate(points)
+    resolution = prepared.resolution
+    nothing = np.tile(np.int32([resolution, NONE]), (resolution**2, 1))
+    rays = np.arange(resolution**2)
+    return np.concatenate(
+        [
+            divide_rays(along, axis, resolution, rays, nothing).midpoints()
+            for axis, along in enumerate(hits)
+        ]
+    )

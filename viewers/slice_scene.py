@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.graph import RaySlice
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
 from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
+from .ray_slice import RaySlice
 
 INSIDE, DROPPED = 0.13, 0.045
 """How thick a segment is drawn, in cells of the lattice."""

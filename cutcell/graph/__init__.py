@@ -4,7 +4,6 @@ from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .lattice import Lattice
 from .orientation.orient import inverted_faces
-from .slice import RaySlice, slice_rays
 
 __all__ = [
     "INTERIOR",
@@ -12,8 +11,6 @@ __all__ = [
     "SURFACE",
     "CutCellGraph",
     "Lattice",
-    "RaySlice",
     "build_graph",
     "inverted_faces",
-    "slice_rays",
 ]

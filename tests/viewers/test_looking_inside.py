@@ -9,13 +9,13 @@ import pyvista
 
 import cutcell
 from cutcell.geodesics import trace_path
-from cutcell.graph import slice_rays
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.graph_scene import cut_at, depth_field
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
 from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
 from cutcell_viewers.plane_section import from_scene, part_above, plane_section
+from cutcell_viewers.ray_slice import slice_rays
 from cutcell_viewers.section_scene import (
     body_section,
     field_face,

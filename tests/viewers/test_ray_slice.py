@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from cutcell import ParameterError, TriangleMesh, build_graph, winding_number
-from cutcell.graph import INTERIOR, slice_rays
+from cutcell.graph import INTERIOR
+from cutcell_viewers.ray_slice import slice_rays
 from tests import meshes
 
 

@@ -11,17 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
-from ..method import check_resolution
-from ..rig import TriangleMesh
-from ..rig.checks import check_choice, check_integer, check_number
-from .lattice import Lattice
-from .ray_tracers import CASTERS
-from .rays import AXES, cast_rays, points_on_rays
-from .segments import divide_rays
-from .surface import prepare_surface
-from .winding.exact import WindingNumbers
-from .winding.libigl import fast_winding_numbers
+from cutcell import ParameterError, TriangleMesh
+from cutcell.graph import Lattice
+from cutcell.graph.ray_tracers import CASTERS
+from cutcell.graph.rays import AXES, cast_rays, points_on_rays
+from cutcell.graph.segments import divide_rays
+from cutcell.graph.surface import prepare_surface
+from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.graph.winding.libigl import fast_winding_numbers
+from cutcell.method import check_resolution
+from cutcell.rig.checks import check_choice, check_integer, check_number
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,26 +148,32 @@ def slice_rays(
     numbers = np.arange(resolution)
     first = normal == AXES[axis][0]
     numbers = index * resolution + numbers if first else numbers * resolution + index
-    segments = divide_rays(hits, numbers, resolution)
-    is_shown = segments.has_ends & (segments.low < segments.high)
+    whole = np.tile(np.int32([0, resolution]), (resolution**2, 1))
+    segments = divide_rays(hits, axis, resolution, numbers, whole)
     low, high = (
-        segments.points(position, resolution, axis)[is_shown]
-        for position in (segments.low, segments.high)
+        np.where(is_hit, np.append(hits.position, 0.0)[hit], (segments.number + half) / resolution)
+        for is_hit, hit, half in (
+            (segments.from_hit, segments.gap - 1, -0.5),
+            (segments.to_hit, segments.gap, 0.5),
+        )
     )
-    middle = (low + high) / 2
+    shown = np.flatnonzero(low < high)
+    low, high = (
+        points_on_rays(segments.ray[shown], ends[shown], resolution, axis) for ends in (low, high)
+    )
+    middle = segments.midpoints(shown)
     if winding == "exact":
         at_middle = WindingNumbers(surface.vertices, surface.faces).at(middle)
     else:
         at_middle = fast_winding_numbers(surface, middle)
     ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))
     in_slice = np.isin(ray, numbers)
-    crossing = points_on_rays(ray[in_slice], hits.position[in_slice], resolution, axis)
     return RaySlice(
         low,
         high,
         at_middle,
         at_middle >= threshold,
-        crossing,
+        points_on_rays(ray[in_slice], hits.position[in_slice], resolution, axis),
         hits.sign[in_slice],
         hits.triangle[in_slice],
         surface.lattice,
