@@ -25,8 +25,8 @@ MAX_SAMPLES = 4096
 """On all patches together, unless there are more than half as many patches."""
 COINCIDENT = 1e-9
 """A face this close to a point does not hide it: it is the other side of a doubled sheet."""
-COLUMNS = 128
-"""Cells along each side of the grid that finds the points above and below a face."""
+CELLS_EACH = 4
+"""Cells for each point, of the grid that finds the points above and below a face."""
 SHRINK = 1.75
 """The unit cube, rotated about its middle, fits into itself if scaled down by this."""
 
@@ -130,36 +130,38 @@ def _samples(
 @compiled
 def _escape(points, own_face, vertices, faces):
     """Return for each point whether the rays upward and downward escape, shape (p, 2)."""
-    column = np.empty(len(points), np.int64)
-    for q in range(len(points)):
-        column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
-    start, order = counting_sort(column, COLUMNS * COLUMNS)
-    is_free = np.ones((len(points), 2), np.bool_)
-    hidden = 0
-    for f in range(len(faces)):
-        if 2 * hidden > len(order):  # in a soup a few faces hide nearly all points
-            for q in order:
-                column[q] = column[q] if is_free[q, 0] or is_free[q, 1] else -1
-            start, order = counting_sort(column, COLUMNS * COLUMNS)
-            hidden = 0
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-        high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-        low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-        high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-        for i in range(int(low_u * COLUMNS), int(high_u * COLUMNS) + 1):
-            first = start[i * COLUMNS + int(low_v * COLUMNS)]
-            last = start[i * COLUMNS + int(high_v * COLUMNS) + 1]
-            for q in order[first:last]:
-                pu, pv = points[q, 0], points[q, 1]
-                if own_face[q] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
-                    continue
-                if not (is_free[q, 0] or is_free[q, 1]):
-                    continue
-                span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
-                if span_low <= pv < span_high:
-                    away = height_between(span_low, low, span_high, high, pv) - points[q, 2]
-                    if abs(away) > COINCIDENT:
-                        is_free[q, 0 if away > 0 else 1] = False
-                        hidden += not (is_free[q, 0] or is_free[q, 1])
+    is_free, left, f = np.ones((len(points), 2), np.bool_), np.arange(len(points)), 0
+    while f < len(faces) and len(left):
+        columns = int(np.sqrt(CELLS_EACH * len(left))) + 1
+        column = np.empty(len(left), np.int64)
+        for k, q in enumerate(left):
+            column[k] = int(points[q, 0] * columns) * columns + int(points[q, 1] * columns)
+        start, order = counting_sort(column, columns * columns)
+        left = left[order]
+        near, own, free, hidden = points[left], own_face[left], is_free[left], 0
+        # In a soup a few faces hide nearly all points: then the others are sorted anew.
+        while f < len(faces) and 2 * hidden <= len(left):
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+            low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+            high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+            low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+            high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+            for i in range(int(low_u * columns), int(high_u * columns) + 1):
+                first = start[i * columns + int(low_v * columns)]
+                last = start[i * columns + int(high_v * columns) + 1]
+                for k in range(first, last):
+                    pu, pv = near[k, 0], near[k, 1]
+                    if own[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
+                        continue
+                    if not (free[k, 0] or free[k, 1]):
+                        continue
+                    span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
+                    if span_low <= pv < span_high:
+                        away = height_between(span_low, low, span_high, high, pv) - near[k, 2]
+                        if abs(away) > COINCIDENT:
+                            free[k, 0 if away > 0 else 1] = False
+                            hidden += not (free[k, 0] or free[k, 1])
+            f += 1
+        is_free[left] = free
+        left = left[free[:, 0] | free[:, 1]]
     return is_free
