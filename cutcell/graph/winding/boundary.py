@@ -17,27 +17,14 @@ class Boundary(NamedTuple):
     Parameters
     ----------
     loop : array, shape (e,), int64
-        The vertices of the loops, one loop after the other, in the direction of the faces.
+        The vertices of the loops, one loop after the other, in the direction of the faces. A loop
+        is repeated where faces lie on copies.
     start : array, shape (l + 1,), int64
         Loop i has the vertices loop[start[i]] to loop[start[i + 1] - 1].
-    times : array, shape (l,), int64
-        How often the chain runs around each loop: more than once where faces lie on copies.
     """
 
     loop: NDArray[np.int64]
     start: NDArray[np.int64]
-    times: NDArray[np.int64]
-
-    @property
-    def unrolled(self) -> Boundary:
-        """The same chain with loops that are run around once, and repeated."""
-        if (self.times == 1).all():
-            return self
-        begin = np.repeat(self.start[:-1], self.times)
-        size = np.repeat(np.diff(self.start), self.times)
-        start = np.concatenate([[0], np.cumsum(size)])
-        slot = np.arange(start[-1]) + np.repeat(begin - start[:-1], size)
-        return Boundary(self.loop[slot], start, np.ones_like(begin))
 
     @property
     def following(self) -> NDArray[np.int64]:
@@ -79,7 +66,7 @@ def boundary_of(edges: NDArray[np.int32], incidence: NDArray[np.int32]) -> Bound
     """Assemble the boundary from edges and their signed incidence, see `geometry.edges`."""
     is_open = incidence != 0
     if not is_open.any():
-        return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64))
+        return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64))
     return Boundary(*_loops(edges[is_open], incidence[is_open], int(edges.max()) + 1))
 
 
@@ -88,8 +75,7 @@ def _loops(edges, count, vertices):
     """Decompose the boundary chain into closed loops without repeated vertices.
 
     The chain enters each vertex as often as it leaves it, so a walk along unused edges never gets
-    stuck. Whenever the walk returns to a vertex of its path it has closed a loop, which is removed
-    as often as all of its edges are there.
+    stuck. Whenever the walk returns to a vertex of its path it has closed a loop, which is removed.
     """
     leaving = np.zeros(vertices + 1, np.int64)
     for e in range(len(edges)):
@@ -102,7 +88,7 @@ def _loops(edges, count, vertices):
         following[cursor[a]], unused[cursor[a]] = b, abs(count[e])
         cursor[a] += 1
 
-    loop, start, times = [np.int64(0) for _ in range(0)], [0], [np.int64(0) for _ in range(0)]
+    loop, start = [np.int64(0) for _ in range(0)], [0]
     path, slot = np.empty(vertices + 1, np.int64), np.full(vertices, -1)
     cursor = leaving[:-1].copy()
     for first in range(vertices):
@@ -114,17 +100,13 @@ def _loops(edges, count, vertices):
                 length += 1
                 continue
             around = path[slot[vertex] : length]
-            least = unused[cursor[around[0]]]
-            for a in around:
-                least = min(least, unused[cursor[a]])
             for a in around:
                 loop.append(a)
-                unused[cursor[a]] -= least
+                unused[cursor[a]] -= 1
                 cursor[a] += unused[cursor[a]] == 0
                 slot[a] = -1
             start.append(len(loop))
-            times.append(least)
             slot[vertex] = length - len(around)
             length = slot[vertex] + 1
         slot[first] = -1
-    return np.array(loop), np.array(start), np.array(times)
+    return np.array(loop), np.array(start)

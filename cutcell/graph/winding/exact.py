@@ -148,12 +148,12 @@ def _boundary_angle(vertices, boundary, pu, pv, height):
 
     The ray runs from (pu, pv, height) along the third coordinate of the vertices.
     """
-    loop, start, times = boundary
+    loop, start = boundary
     # Each solid angle is twice the argument of a complex number. The arguments are added by
     # multiplying the numbers (x, y); full turns are counted separately: the sum of two
     # arguments in one half plane has wrapped around if the product is in the other.
-    total, x, y, turns = 0.0, 1.0, 0.0, 0.0
-    for k in range(len(times)):
+    x, y, turns = 1.0, 0.0, 0.0
+    for k in range(len(start) - 1):
         b = loop[start[k + 1] - 1]
         bu, bv, less_b = _relative(vertices, b, pu, pv, height)
         for e in range(start[k], start[k + 1]):
@@ -186,10 +186,7 @@ def _boundary_angle(vertices, boundary, pu, pv, height):
             size = abs(x) + abs(y)
             if size < TINY or size > 1 / TINY:
                 x, y = x / size, y / size
-        if k + 1 == len(times) or times[k + 1] != times[k]:
-            total += times[k] * (turns + np.arctan2(y, x) / (2 * np.pi))
-            x, y, turns = 1.0, 0.0, 0.0
-    return total
+    return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
 @compiled(inline="always")

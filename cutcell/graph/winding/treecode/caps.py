@@ -27,7 +27,6 @@ GAP = 3e-3
 
 def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close a mesh in the unit cube by fans or, if their area is smaller, strips between rims."""
-    boundary = boundary.unrolled
     caps = cap_holes(vertices, boundary)
     if len(boundary.loop) == 0:
         return caps
@@ -36,7 +35,7 @@ def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
 
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close a mesh of vertices (n, 3) that has this boundary by a fan for each of its loops."""
-    loop, start, _ = boundary.unrolled
+    loop, start = boundary
     apex, middles, faces = _fans(vertices, loop, start)
     return Caps(np.concatenate([vertices, middles]), faces, loop, start, apex)
 
@@ -65,10 +64,10 @@ def _strips(vertices: NDArray[np.float64], boundary: Boundary) -> Boundary:
     key, index = np.unique(side, return_inverse=True)
     incidence = np.bincount(index, np.sign(to_b - to_a)).astype(np.int32)
     edges = np.stack(np.divmod(key, len(vertices)), axis=1).astype(np.int32)
-    left = boundary_of(edges, incidence).unrolled
+    left = boundary_of(edges, incidence)
     start = np.concatenate([start, start[-1] + left.start[1:]])
     loop = np.concatenate([corners[is_corner], left.loop])
-    return Boundary(loop, start, np.ones(len(start) - 1, np.int64))
+    return Boundary(loop, start)
 
 
 def _area(caps: Caps) -> float:

@@ -32,8 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.vectors import between, dot
-from ....runtime.compiled import compiled, no_refcount
-from ....runtime.threads import in_threads, parts
+from ....runtime.compiled import compiled
 from ..boundary import Caps
 from . import multipole
 
@@ -72,73 +71,34 @@ class Clusters(NamedTuple):
 
 def build_tree(caps: Caps) -> Clusters:
     """Sort caps into a tree of clusters."""
-    loops, leaves = len(caps.apex), 1
-    while leaves * LEAF_SIZE < loops:
-        leaves *= 2
-    start = np.arange(leaves + 1) * loops // leaves
-    order, points = np.arange(loops), caps.vertices[caps.apex]
-    level = 1
-    while level < leaves:
-        rows = [(level + part.start, level + part.stop) for part in parts(level)]
-        in_threads(lambda row: _split(points, start, order, *row), rows)
-        level *= 2
+    order, start = _sort(caps.vertices[caps.apex])
     size = np.diff(caps.start)[order]
     first = np.concatenate([[0], np.cumsum(size)])
     place = np.arange(first[-1]) + np.repeat(caps.start[:-1][order] - first[:-1], size)
     rim, apex = caps.vertices[caps.loop[place]], caps.vertices[caps.apex[order]]
     sphere, moments, weight = _sum_moments(rim, first, apex, start)
-    step = 16 if loops > 1000 else 1  # threads do not pay for few
-    in_threads(
-        lambda part: _bound_spheres(rim, first, apex, start, weight, part, step, sphere),
-        range(1, step + 1),
-    )
+    _bound_spheres(rim, first, apex, start, weight, sphere)
     return Clusters(rim, first, apex, start, sphere, moments)
 
 
-@no_refcount
-def _split(points, start, order, first, last):
-    """Partition the points of clusters at the median of their longest axis."""
-    leaves = len(start) - 1
-    for k in range(first, last):
-        low = high = k
-        while low < leaves:
-            low, high = 2 * low, 2 * high + 1
-        begin, middle, end = (
-            start[low - leaves],
-            start[(low + high + 1) // 2 - leaves],
-            start[high - leaves + 1],
-        )
-        longest, widest = -1.0, 0
-        for axis in range(3):
-            least = most = points[order[begin], axis]
-            for i in range(begin, end):
-                least = min(least, points[order[i], axis])
-                most = max(most, points[order[i], axis])
-            if most - least >= longest:
-                longest, widest = most - least, axis
-        _select(points, order, widest, begin, middle, end)
+def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Sort points (l, 3) into leaves, halving clusters across their longest axis.
 
-
-@no_refcount
-def _select(points, order, axis, begin, middle, end):
-    """Put the lowest along an axis before the middle of a range (Hoare's quickselect, 1961)."""
-    while end - begin > 1:
-        pivot = points[order[(begin + end) // 2], axis]
-        i, j = begin, end - 1
-        while i <= j:
-            while points[order[i], axis] < pivot:
-                i += 1
-            while points[order[j], axis] > pivot:
-                j -= 1
-            if i <= j:
-                order[i], order[j] = order[j], order[i]
-                i, j = i + 1, j - 1
-        if middle <= j:
-            end = j + 1
-        elif middle >= i:
-            begin = i
-        else:
-            return
+    Returns the order, shape (l,), and where each leaf begins in it, (m + 1,).
+    """
+    count, level, leaves = len(points), 1, 1
+    while leaves * LEAF_SIZE < count:
+        leaves *= 2
+    order, start = np.arange(count), np.arange(leaves + 1) * count // leaves
+    while level < leaves:
+        bounds, ordered = start[:: leaves // level], points[order]
+        low, high = (f.reduceat(ordered, bounds[:-1]) for f in (np.minimum, np.maximum))
+        size = np.diff(bounds)
+        along = np.repeat((high - low).argmax(axis=1), size)
+        cluster = np.repeat(np.arange(level), size)
+        order = order[np.lexsort((ordered[np.arange(count), along], cluster))]
+        level *= 2
+    return order, start
 
 
 @compiled
@@ -190,13 +150,13 @@ def _add_fan(rim, span, apex, centre, moments, weight):
 
 
 @compiled
-def _bound_spheres(rim, first, apex, start, weight, part, step, sphere):
-    """Compute radius and cubic mean distance of every `step`-th cluster, from `part` on.
+def _bound_spheres(rim, first, apex, start, weight, sphere):
+    """Compute radius and cubic mean distance of every cluster.
 
     The cube of a distance is convex: its mean over a triangle is at most that over the corners.
     """
     leaves = len(start) - 1
-    for k in range(part, 2 * leaves, step):
+    for k in range(1, 2 * leaves):
         low = high = k
         while low < leaves:
             low, high = 2 * low, 2 * high + 1

@@ -27,6 +27,7 @@ from ....geometry.vectors import between, cross, dot, length, segment_fraction, 
 from ....runtime.compiled import compiled, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
+from .solid_angles import VALUE, Y, Z, add_arguments, add_cap, clear
 
 SIZE = 10
 ERROR = SIZE - 1
@@ -39,8 +40,6 @@ COARSE = 0.3
 """Near clusters of a larger error are split, to see if parts of them are far."""
 USELESS = 0.5
 """With a larger error an expansion decides nothing."""
-SMALL = 1e-60
-"""Products are rescaled below this, and above its inverse, before they under- or overflow."""
 
 
 class LocalExpansions(NamedTuple):
@@ -113,9 +112,14 @@ def add_far_clusters(clusters, among, local, near, q, reach):
 
 
 @no_refcount
-def add_clusters(clusters, among, local, q, reach, tolerance):
-    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless."""
-    leaves = len(clusters.start) - 1
+def add_clusters(clusters, among, local, q, reach, tolerance, points):
+    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless.
+
+    `points` is a workspace.
+    """
+    leaves, unscaled = len(clusters.start) - 1, 0
+    points[0], points[Y], points[Z] = q
+    clear(points, 1)
     for top in among:
         k, end = top, next_cluster(top)
         while k != end:
@@ -128,21 +132,17 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
                 k *= 2
                 continue
             else:
-                _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
+                for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
+                    rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+                    _add_gradient(local, rim, clusters.apex[loop], q, reach, error == np.inf)
+                    if local[ERROR] > USELESS:
+                        return
+                    unscaled = add_cap(rim, clusters.apex[loop], points, 1, unscaled)
             if local[ERROR] > USELESS:
                 return
             k = next_cluster(k)
-
-
-@no_refcount
-def _add_caps(clusters, leaf, local, q, reach, may_cross):
-    """Add the caps of a leaf of the tree one by one; the error is infinite if one crosses."""
-    for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
-        rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-        _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
-        if local[ERROR] > USELESS:
-            return
-        local[0] += _winding_number(rim, clusters.apex[loop], q)
+    add_arguments(points, 1)
+    local[0] += points[VALUE]
 
 
 @compiled(inline="always")
@@ -151,40 +151,6 @@ def _relative(clusters, k, q, reach):
     r = between(q, clusters.sphere[k])
     distance = length(r)
     return r, distance, error_bound(clusters.sphere[k], distance, reach)
-
-
-@no_refcount
-def _winding_number(rim, apex, q):
-    """Return the winding number of one cap: its solid angle over 4 pi.
-
-    Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
-    Strackee 1983). The arguments are added by multiplying the numbers (x, y); full turns are
-    counted separately: the sum of two arguments in one half plane has wrapped around if the
-    product is in the other.
-    """
-    x, y, turns = 1.0, 0.0, 0.0
-    # Where the apex is the rim's first vertex, the edges at it span no triangle.
-    begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
-    c = between(q, apex)
-    b = between(q, rim[begin - 1])
-    lc, lb = length(c), length(b)
-    for e in range(begin, end):
-        a = between(q, rim[e] if e < len(rim) else rim[0])
-        la = length(a)
-        triple = dot(a, cross(b, c))
-        rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
-        imaginary = x * triple + y * rest
-        x, was = x * rest - y * triple, y
-        y = imaginary
-        if was >= 0 and triple >= 0 and y < 0:
-            turns += 1
-        elif was < 0 and triple < 0 and y >= 0:
-            turns -= 1
-        size = abs(x) + abs(y)
-        if 0 < size < SMALL or size > 1 / SMALL:
-            x, y = x / size, y / size
-        b, lb = a, la
-    return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
 @no_refcount

@@ -36,9 +36,7 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, 0
-    for i in range(count):
-        points[VALUE + i] = points[IM + i] = 0.0
-        points[RE + i] = points[CLEAR + i] = 1.0
+    clear(points, count)
     for top in among:
         k, end = top, next_cluster(top)
         while k != end:
@@ -53,11 +51,25 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    unscaled = _add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
             k = next_cluster(k)
+    add_arguments(points, count)
+    return error
+
+
+@no_refcount
+def clear(points, count):
+    """Begin the sums of some points."""
+    for i in range(count):
+        points[VALUE + i] = points[IM + i] = 0.0
+        points[RE + i] = points[CLEAR + i] = 1.0
+
+
+@no_refcount
+def add_arguments(points, count):
+    """End the sums of some points: add the arguments of the complex numbers."""
     for i in range(count):
         points[VALUE + i] += np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
-    return error
 
 
 @vectorized
@@ -74,10 +86,13 @@ def _add_cluster(moments, sphere, points, count):
 
 
 @no_refcount
-def _add_cap(rim, apex, points, count, unscaled):
-    """Add the solid angles of one cap, as `expansion._winding_number` does for one point.
+def add_cap(rim, apex, points, count, unscaled):
+    """Add the solid angles of one cap.
 
-    `unscaled` triangles were added since the last rescaling; returns how many it is now.
+    Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
+    Strackee 1983). The arguments are added by multiplying the numbers; full turns are counted
+    separately: the sum of two arguments in one half plane has wrapped around if the product is in
+    the other. `unscaled` triangles were added since the last rescaling; returns how many it is now.
     """
     # Where the apex is the rim's first vertex, the edges at it span no triangle.
     begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
