@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..runtime.compiled import compiled, copy_to
 from ..runtime.threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
+from .inside_edges import diagonal_edges, fill_edges, lattice_steps
 from .interior import interior_points
 from .memory import check_nodes
 from .rays import AXES, RayHits
@@ -34,7 +34,10 @@ def assemble(
     for intervals, hits_along in zip(inside, hits, strict=True):
         ends = intervals.low, intervals.high
         numbers.append(_number_ends(*ends, len(hits_along.position), node))
-        starts.append(edge_starts(intervals, edge))
+        points_and_hits = (
+            intervals.last - intervals.first + 1 + np.not_equal(ends, NONE).sum(axis=0)
+        )
+        starts.append(np.cumsum(np.append(edge, points_and_hits - 1)))
         node, edge = max(node, int(numbers[-1].max(initial=0)) + 1), int(starts[-1][-1])
     node_kinds = [len(vertices), len(points), node - first_surface]
     edge_kinds = [len(mesh_edges), edge - len(mesh_edges), 3 * node_kinds[SURFACE]]
@@ -44,8 +47,9 @@ def assemble(
     edges, lengths = np.empty((sum(edge_kinds), 2), np.int32), np.empty(sum(edge_kinds))
 
     def fill_inside(axis: int) -> None:
+        where, intervals = (resolution, axis, len(vertices)), (*vars(inside[axis]).values(),)
         ends = hits[axis].position, numbers[axis]
-        fill_edges(inside[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths)
+        fill_edges(where, (*intervals, starts[axis]), points.table, ends, edges, lengths)
 
     def fill_surface(axis: int) -> None:
         along = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
@@ -61,7 +65,7 @@ def assemble(
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
         steps = lattice_steps(nodes, edges[len(mesh_edges) : edge], len(vertices), first_surface)
-        diagonals = diagonal_edges(steps, len(vertices))
+        diagonals = len(vertices) + diagonal_edges(steps)
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         distance = np.linalg.norm(np.diff(nodes[diagonals], axis=1)[:, 0], axis=1)
         lengths = np.concatenate([lengths[:edge], distance, lengths[edge:]])
@@ -88,19 +92,15 @@ def _kinds(counts: list[int]) -> NDArray[np.uint8]:
     return np.repeat(np.array([MESH, INTERIOR, SURFACE], np.uint8), counts)
 
 
-@compiled
-def _number_ends(low, high, hits, first):
+def _number_ends(
+    low: NDArray[np.int32], high: NDArray[np.int32], hits: int, first: int
+) -> NDArray[np.int32]:
     """Give numbers to the hits at the ends of intervals from `first` on; the others get NONE."""
+    is_end = np.zeros(hits + 1, np.bool_)  # the last entry is for NONE
+    is_end[low] = is_end[high] = True
+    ends = np.flatnonzero(is_end[:-1])
     node = np.full(hits, NONE, np.int32)
-    for r in range(len(low)):
-        if low[r] != NONE:
-            node[low[r]] = 0
-        if high[r] != NONE:
-            node[high[r]] = 0
-    for c in range(hits):
-        if node[c] != NONE:
-            node[c] = first
-            first += 1
+    node[ends] = np.arange(first, first + len(ends))
     return node
 
 

@@ -61,7 +61,12 @@ def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> Inter
     points = _number_stretches(along_z.ray, along_z.first, along_z.last, resolution)
     # Where the surface passes through a lattice point, or an open mesh's winding number is close
     # to the threshold, a point may have kept segments along x or y only.
-    missed = in_threads(lambda axis: _missed_points(inside[axis], axis, points), (0, 1))
+    missed = in_threads(
+        lambda axis: _missed_points(
+            inside[axis].ray, inside[axis].first, inside[axis].last, axis, resolution, *points.table
+        ),
+        (0, 1),
+    )
     extra = np.unique(np.concatenate(missed))
     if len(extra) == 0:
         return points
@@ -73,38 +78,14 @@ def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> Inter
 
 
 def _number_stretches(
-    column: NDArray, first: NDArray, last: NDArray, resolution: int
+    column: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[np.int32], resolution: int
 ) -> InteriorPoints:
-    return InteriorPoints(resolution, *_count_stretches(column, first, last, resolution))
-
-
-@compiled
-def _count_stretches(column, first, last, resolution):
-    """Drop empty stretches; count the stretches up to each column, and the points up to each."""
-    filled = 0
-    for s in range(len(first)):
-        filled += first[s] <= last[s]
-    start = np.zeros(resolution * resolution + 1, np.int64)
-    low, high = np.empty(filled, np.int32), np.empty(filled, np.int32)
-    number = np.zeros(filled + 1, np.int64)
-    n = 0
-    for s in range(len(first)):
-        if first[s] <= last[s]:
-            start[column[s] + 1] += 1
-            low[n], high[n] = first[s], last[s]
-            number[n + 1] = number[n] + last[s] - first[s] + 1
-            n += 1
-    return np.cumsum(start), low, high, number
-
-
-def _missed_points(inside: InsideIntervals, axis: int, points: InteriorPoints) -> NDArray[np.int64]:
-    """List the lattice numbers of the points along one axis that `points` lacks."""
-    resolution = points.resolution
-    arguments = (inside.ray, inside.first, inside.last, axis, resolution, *points.table)
-    missed = np.empty(_find_missed(*arguments, np.empty(0, np.int64)), np.int64)
-    if len(missed):
-        _find_missed(*arguments, missed)
-    return missed
+    """Drop empty stretches, shapes (s,); count those and the points before each."""
+    is_filled = first <= last
+    column, first, last = column[is_filled], first[is_filled], last[is_filled]
+    start = np.append(0, np.cumsum(np.bincount(column, minlength=resolution * resolution)))
+    number = np.append(0, np.cumsum(last - first + 1, dtype=np.int64))
+    return InteriorPoints(resolution, start, first, last, number)
 
 
 @compiled(inline="always")
@@ -124,16 +105,16 @@ def point_on_ray(axis, ray, k, resolution):
 
 
 @compiled
-def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, number, missed):
-    count = 0
+def _missed_points(ray, first_k, last_k, axis, resolution, start, first, last, number):
+    """List the lattice numbers of the points along one axis that the columns lack."""
+    missed, count = np.empty(max(0, (last_k - first_k + 1).sum()), np.int64), 0
     for r in range(len(ray)):
         for k in range(first_k[r], last_k[r] + 1):
             column, z = point_on_ray(axis, ray[r], k, resolution)
             if point_number(start, first, last, number, column, z) == OUTSIDE:
-                if len(missed):
-                    missed[count] = column * resolution + z
+                missed[count] = column * resolution + z
                 count += 1
-    return count
+    return missed[:count].copy()
 
 
 @compiled

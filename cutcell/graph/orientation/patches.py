@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ...geometry.triangles import normals
-from ...geometry.union_find import labels, union
 from ...geometry.vectors import between, dot, length, triangle_normal
 from ...runtime.compiled import compiled
 
@@ -140,39 +141,34 @@ def _flood(faces, partner, areas):
     return flips, patch, is_plain and is_orientable, is_orientable
 
 
-@compiled
-def _split(faces, partner, flips):
+def _split(
+    faces: NDArray[np.int32], partner: NDArray[np.int32], flips: NDArray[np.bool_]
+) -> NDArray[np.int32]:
     """Return the patch of each face: faces connected across consistent edges."""
-    first = np.arange(len(faces))
-    for half_edge in range(len(partner)):
-        other = partner[half_edge]
-        if other < half_edge:
-            continue
-        if _is_consistent(faces, flips, half_edge, other):
-            union(first, half_edge // 3, other // 3)
-    return labels(first)[0]
+    half_edge = np.flatnonzero((partner != NONE) & _is_consistent(faces, partner, flips))
+    pairs = half_edge // 3, partner[half_edge] // 3
+    graph = coo_array((np.ones(len(half_edge), np.bool_), pairs), shape=(len(faces),) * 2)
+    patch: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return patch
 
 
-@compiled
-def _rims(faces, partner, flips, patch):
-    """List the boundary edges of the patches, and the patch of each."""
-    is_open = np.zeros(len(partner), np.bool_)
-    for half_edge in range(len(partner)):
-        other = partner[half_edge]
-        is_open[half_edge] = other == NONE or not _is_consistent(faces, flips, half_edge, other)
-    open_edges = np.flatnonzero(is_open)
-    rims, of_rim = np.empty((len(open_edges), 2), np.int32), np.empty(len(open_edges), np.int32)
-    for s in range(len(open_edges)):
-        f, k = open_edges[s] // 3, open_edges[s] % 3
-        start, end = faces[f, k], faces[f, (k + 1) % 3]
-        rims[s, 0], rims[s, 1] = (end, start) if flips[f] else (start, end)
-        of_rim[s] = patch[f]
-    return rims, of_rim
+def _rims(
+    faces: NDArray[np.int32],
+    partner: NDArray[np.int32],
+    flips: NDArray[np.bool_],
+    patch: NDArray[np.int32],
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """List the boundary edges of the patches, (s, 2), and the patch of each, (s,)."""
+    half_edge = np.flatnonzero((partner == NONE) | ~_is_consistent(faces, partner, flips))
+    face, corner = np.divmod(half_edge, 3)
+    rims = np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
+    return np.where(flips[face, None], rims[:, ::-1], rims), patch[face]
 
 
-@compiled(inline="always")
-def _is_consistent(faces, flips, half_edge, other):
-    """Return whether two faces traverse their shared edge in opposite directions, once flipped."""
-    f, g = half_edge // 3, other // 3
-    against = faces[f, half_edge % 3] == faces[g, other % 3]
-    return against == (flips[f] != flips[g])
+def _is_consistent(
+    faces: NDArray[np.int32], partner: NDArray[np.int32], flips: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return where two faces traverse their shared edge in opposite directions, once flipped."""
+    against = faces.ravel() == faces.ravel()[partner]
+    is_consistent: NDArray[np.bool_] = against == (np.repeat(flips, 3) != flips[partner // 3])
+    return is_consistent

@@ -31,6 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ....geometry.triangles import areas
 from ....geometry.vectors import between, dot
 from ....runtime.compiled import compiled
 from ..boundary import Caps
@@ -76,9 +77,7 @@ def build_tree(caps: Caps) -> Clusters:
     first = np.concatenate([[0], np.cumsum(size)])
     place = np.arange(first[-1]) + np.repeat(caps.start[:-1][order] - first[:-1], size)
     rim, apex = caps.vertices[caps.loop[place]], caps.vertices[caps.apex[order]]
-    sphere, moments, weight = _sum_moments(rim, first, apex, start)
-    _bound_spheres(rim, first, apex, start, weight, sphere)
-    return Clusters(rim, first, apex, start, sphere, moments)
+    return Clusters(rim, first, apex, start, *_measure(rim, first, apex, start))
 
 
 def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -101,52 +100,32 @@ def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.in
     return order, start
 
 
-@compiled
-def _sum_moments(rim, first, apex, start):
-    """Return spheres without radii; moments; and the areas around each rim vertex and apex."""
+def _measure(
+    rim: NDArray[np.float64],
+    first: NDArray[np.int64],
+    apex: NDArray[np.float64],
+    start: NDArray[np.int64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Compute spheres and moments, see `Clusters`."""
     leaves = len(start) - 1
-    count, sphere = np.zeros(2 * leaves), np.zeros((2 * leaves, 6))
-    weight = np.zeros(len(rim)), np.zeros(len(apex))
-    moments = np.zeros((2 * leaves, multipole.SIZE))
-    for k in range(2 * leaves - 1, 0, -1):
-        centre = sphere[k, :3]
-        if k >= leaves:
-            begin, end = start[k - leaves], start[k - leaves + 1]
-            count[k] = first[end] - first[begin]
-            for e in range(first[begin], first[end]):
-                for i in range(3):
-                    centre[i] += rim[e, i] / count[k]
-            for loop in range(begin, end):
-                span = first[loop], first[loop + 1]
-                area = _add_fan(rim, span, apex[loop], centre, moments[k], weight[0])
-                weight[1][loop] = area
-                sphere[k, 5] += area
-            continue
-        count[k] = count[2 * k] + count[2 * k + 1]
-        sphere[k, 5] = sphere[2 * k, 5] + sphere[2 * k + 1, 5]
-        for half in (2 * k, 2 * k + 1):
-            for i in range(3):
-                centre[i] += sphere[half, i] * (count[half] / count[k])
-        for half in (2 * k, 2 * k + 1):
-            multipole.add_translated(moments[k], moments[half], between(centre, sphere[half]))
-    for k in range(1, 2 * leaves):
-        multipole.make_harmonic(moments[k])
-    return sphere, moments, weight
-
-
-@compiled
-def _add_fan(rim, span, apex, centre, moments, weight):
-    """Add the moments of one cap, and the areas of its triangles to their rim vertices."""
-    begin, end = span
-    total, before = 0.0, end - 1
-    c, b = between(centre, apex), between(centre, rim[before])
-    for e in range(begin, end):
-        a, b = b, between(centre, rim[e])
-        area = multipole.add_triangle(moments, b, a, c)
-        weight[before] += area
-        weight[e] += area
-        total, before = total + area, e
-    return total
+    sphere = np.zeros((2 * leaves, 6))
+    if len(rim) == 0:
+        return sphere, np.zeros((2 * leaves, multipole.SIZE))
+    before = np.arange(len(rim)) - 1
+    before[first[:-1]] = first[1:] - 1
+    corners = np.stack([rim, rim[before], np.repeat(apex, np.diff(first), axis=0)], axis=1)
+    area = areas(corners)
+    level = leaves
+    while level:
+        bounds = first[start[:: leaves // level]]
+        sphere[level : 2 * level, :3] = np.add.reduceat(rim, bounds[:-1])
+        sphere[level : 2 * level, :3] /= np.diff(bounds)[:, None]
+        sphere[level : 2 * level, 5] = np.add.reduceat(area, bounds[:-1])
+        level //= 2
+    of_rim = area.copy()
+    of_rim[before] += area
+    _bound_spheres(rim, first, apex, start, (of_rim, np.add.reduceat(area, first[:-1])), sphere)
+    return sphere, multipole.moments_of(corners, first[start[:-1]], sphere[:, :3])
 
 
 @compiled

@@ -9,11 +9,25 @@ and third degree. A row of SIZE numbers holds their coefficients:
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ....geometry.vectors import length, triangle_normal
+from ....geometry.triangles import normals
 from ....runtime.compiled import compiled
 
 SIZE = 19
+MONOMIALS = (
+    *((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)),
+    *((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 0, 1), (0, 0, 2), (0, 1, 1), (1, 1, 2), (0, 2, 2)),
+    *((1, 2, 2), (0, 1, 2)),
+)
+"""The axes of the products in a row, after x, y and z."""
+SECOND, THIRD = (
+    np.array(
+        [[m == tuple(sorted(axes)) for m in same] for axes in np.ndindex((3,) * degree)], float
+    )
+    for degree, same in ((2, MONOMIALS[:6]), (3, MONOMIALS[6:]))
+)
+"""Which products of a tensor are added up, shapes (9, 6) and (27, 10)."""
 
 
 @compiled(inline="always")
@@ -33,77 +47,49 @@ def cube(p, x, y, z):
     return x * of_x + y * of_y + p[11] * z * z * z
 
 
-@compiled(inline="always")
-def _add_square(p, a, b, factor):
-    """Add the product of two linear forms."""
-    p[3] += factor * a[0] * b[0]
-    p[4] += factor * a[1] * b[1]
-    p[5] += factor * a[2] * b[2]
-    p[6] += factor * (a[0] * b[1] + a[1] * b[0])
-    p[7] += factor * (a[0] * b[2] + a[2] * b[0])
-    p[8] += factor * (a[1] * b[2] + a[2] * b[1])
+def moments_of(
+    corners: NDArray[np.float64], leaf: NDArray[np.int64], centre: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Compute the moments of the clusters of a balanced binary tree.
+
+    Shapes: corners (t, 3, 3), triangles leaf by leaf; leaf (m,), the first triangle of each;
+    centre (2 m, 3); returns (2 m, SIZE).
+    """
+    leaves, count = len(leaf), len(centre)
+    y = corners - np.repeat(centre[leaves:], np.diff(leaf, append=len(corners)), axis=0)[:, None]
+    normal, total = normals(corners) / 2, y.sum(axis=1)
+    # The mean of y y over a triangle, by quadrature.
+    square = (np.einsum("tci,tcj->tij", y, y) + total[:, :, None] * total[:, None]) / 12
+    n, ny, nyy = (np.zeros((count, *shape)) for shape in ((3,), (3, 3), (3, 3, 3)))
+    n[leaves:] = np.add.reduceat(normal, leaf)
+    ny[leaves:] = np.add.reduceat(normal[:, :, None] * total[:, None] / 3, leaf)
+    nyy[leaves:] = np.add.reduceat(normal[:, :, None, None] * square[:, None], leaf)
+    level = leaves // 2
+    while level:
+        child = np.arange(2 * level, 4 * level)
+        shift = centre[child] - centre[child // 2]
+        n_shift = n[child, :, None] * shift[:, None]
+        ny_shift = ny[child, ..., None] * shift[:, None, None]
+        n_squared = n_shift[..., None] * shift[:, None, None]
+        moved = (
+            n[child],
+            ny[child] + n_shift,
+            nyy[child] + ny_shift + ny_shift.swapaxes(2, 3) + n_squared,
+        )
+        for sums, halves in zip((n, ny, nyy), moved, strict=True):
+            sums[level : 2 * level] = halves[::2] + halves[1::2]
+        level //= 2
+    rows = n, ny.reshape(count, 9) @ SECOND, nyy.reshape(count, 27) @ THIRD
+    return _harmonic(np.concatenate(rows, axis=1))
 
 
-@compiled(inline="always")
-def _add_cube(p, a, b, factor):
-    """Add the product of a linear form and a quadratic one (xx, yy, zz, xy, xz, yz)."""
-    p[9] += factor * a[0] * b[0]
-    p[10] += factor * a[1] * b[1]
-    p[11] += factor * a[2] * b[2]
-    p[12] += factor * (a[1] * b[0] + a[0] * b[3])
-    p[13] += factor * (a[2] * b[0] + a[0] * b[4])
-    p[14] += factor * (a[0] * b[1] + a[1] * b[3])
-    p[15] += factor * (a[2] * b[1] + a[1] * b[5])
-    p[16] += factor * (a[0] * b[2] + a[2] * b[4])
-    p[17] += factor * (a[1] * b[2] + a[2] * b[5])
-    p[18] += factor * (a[0] * b[5] + a[1] * b[4] + a[2] * b[3])
-
-
-@compiled(inline="always")
-def _squared(a):
-    x, y, z = a
-    return x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z
-
-
-@compiled
-def add_triangle(p, a, b, c):
-    """Add the moments of a triangle, its corners relative to the centre; return its area."""
-    normal = triangle_normal(a, b, c)
-    normal = normal[0] / 2, normal[1] / 2, normal[2] / 2
-    total = a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]
-    p[0] += normal[0]
-    p[1] += normal[1]
-    p[2] += normal[2]
-    _add_square(p, normal, total, 1 / 3)
-    # Quadrature of (y . n)^2 over the triangle.
-    for corner in (a, b, c, total):
-        _add_cube(p, normal, _squared(corner), 1 / 12)
-    return length(normal)
-
-
-@compiled
-def add_translated(p, q, shift):
-    """Add the moments q of a cluster whose centre is displaced by `shift` from the one of p."""
-    p[0] += q[0]
-    p[1] += q[1]
-    p[2] += q[2]
-    _add_square(p, q, shift, 1.0)
-    _add_cube(p, q, _squared(shift), 1.0)
-    _add_cube(p, shift, q[3:9], 2.0)
-    for i in range(3, SIZE):
-        p[i] += q[i]
-
-
-@compiled
-def make_harmonic(p):
-    """Remove the multiples of |n|^2: 1/|r| is harmonic, so they contribute nothing."""
-    mean = (p[3] + p[4] + p[5]) / 3
-    for i in range(3, 6):
-        p[i] -= mean
-    x = (3 * p[9] + p[14] + p[16]) / 5
-    y = (3 * p[10] + p[12] + p[17]) / 5
-    z = (3 * p[11] + p[13] + p[15]) / 5
-    _add_cube(p, (x, y, z), (-1.0, -1.0, -1.0, 0.0, 0.0, 0.0), 1.0)
+def _harmonic(p: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Remove the multiples of |n|^2, (c, SIZE): 1/|r| is harmonic, so they contribute nothing."""
+    p[:, 3:6] -= p[:, 3:6].mean(axis=1, keepdims=True)
+    for cubic, *others in ((9, 14, 16), (10, 12, 17), (11, 13, 15)):
+        excess = (3 * p[:, cubic] + p[:, others].sum(axis=1)) / 5
+        p[:, [cubic, *others]] -= excess[:, None]
+    return p
 
 
 @compiled(inline="always")
