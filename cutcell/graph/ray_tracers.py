@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from importlib import import_module
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
 from ..geometry.triangles import normals
-from .rays import AXES, RayHits
+from .rays import AXES, RayHits, points_on_rays
 
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -34,9 +33,7 @@ MAX_LAYERS = 100_000
 """Hits followed along a ray; a soup deeper than this is no body."""
 
 
-def cast_rays_open3d(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int, axis: int
-) -> RayHits:
+def cast_rays_open3d(vertices: Vertices, faces: Faces, resolution: int, axis: int) -> RayHits:
     """Cast the rays of one axis by Open3D's RaycastingScene.list_intersections, in float32."""
     o3d = optional_library("open3d", 'rays="open3d"', "open3d")
     scene = o3d.t.geometry.RaycastingScene()
@@ -49,17 +46,37 @@ def cast_rays_open3d(
     return _ray_hits(vertices, faces, resolution, axis, ray, triangle)
 
 
-def cast_rays_embree(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int, axis: int
-) -> RayHits:
+def cast_rays_embree(vertices: Vertices, faces: Faces, resolution: int, axis: int) -> RayHits:
     """Cast the rays of one axis by Embree, hit after hit, in float32.
 
     Embree reports the first triangle that a ray meets. Each ray is cast again from a float32 step
     behind it, and all are cast in both directions: a triangle hidden within that step behind
     another is the first hit from the other side.
     """
-    scene = _embree_scene(vertices, faces)
-    hits = [_follow(scene, vertices, faces, resolution, axis, direction) for direction in (1, -1)]
+    scenes = optional_library("embreex.rtcore_scene", 'rays="embree"', "embreex")
+    scene = scenes.EmbreeScene()
+    import_module("embreex.mesh_construction").TriangleMesh(
+        scene, vertices.astype(np.float32), faces.astype(np.int32)
+    )
+    hits = [np.empty((2, 0), np.int64)]
+    for direction in (1, -1):
+        origins, directions = _rays(resolution, axis, direction)
+        live, last = np.arange(resolution**2), np.full(resolution**2, -1, np.int64)
+        step = np.full(resolution**2, FLOAT32_STEP)
+        for _ in range(MAX_LAYERS):
+            hit = scene.run(origins[live], directions[live]).astype(np.int64)
+            live, hit = live[hit >= 0], hit[hit >= 0]
+            if len(live) == 0:
+                break
+            # The same triangle again: the step was too short. Do not count it, and step further.
+            again = last[live] == hit
+            step[live] = np.where(again, 2 * step[live], FLOAT32_STEP)
+            last[live] = hit
+            hits.append(np.stack([live, hit])[:, ~again])
+            position = _positions(vertices, faces, resolution, axis, live, hit) * direction
+            origin = origins[live, AXES[axis][2]].astype(np.float64) * direction
+            ahead = np.maximum(position, origin) + step[live]
+            origins[live, AXES[axis][2]] = ahead * direction
     ray, triangle = np.unique(np.concatenate(hits, axis=1), axis=1)
     return _ray_hits(vertices, faces, resolution, axis, ray, triangle)
 
@@ -90,64 +107,23 @@ def _rays(
     resolution: int, axis: int, direction: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return origins and directions of the R x R rays, two arrays (R * R, 3) of float32."""
-    u, v, along = AXES[axis]
-    lattice = (np.arange(resolution) + 0.5) / resolution
-    origins = np.empty((resolution**2, 3), np.float32)
-    origins[:, u] = np.repeat(lattice, resolution)
-    origins[:, v] = np.tile(lattice, resolution)
-    origins[:, along] = -LEAD if direction > 0 else 1 + LEAD
-    directions = np.zeros((resolution**2, 3), np.float32)
-    directions[:, along] = direction
+    ray, start = np.arange(resolution**2), np.float64(-LEAD if direction > 0 else 1 + LEAD)
+    origins = points_on_rays(ray, start, resolution, axis).astype(np.float32)
+    directions = np.zeros_like(origins)
+    directions[:, AXES[axis][2]] = direction
     return origins, directions
-
-
-def _embree_scene(vertices: Vertices, faces: Faces) -> Any:
-    scenes = optional_library("embreex.rtcore_scene", 'rays="embree"', "embreex")
-    construction = import_module("embreex.mesh_construction")
-    scene = scenes.EmbreeScene()
-    construction.TriangleMesh(scene, vertices.astype(np.float32), faces.astype(np.int32))
-    return scene
-
-
-def _follow(
-    scene: Any, vertices: Vertices, faces: Faces, resolution: int, axis: int, direction: int
-) -> Hits:
-    """Follow all rays through the scene; return rays and triangles that met, shape (2, h)."""
-    along = AXES[axis][2]
-    origins, directions = _rays(resolution, axis, direction)
-    live = np.arange(resolution**2)
-    last = np.full(resolution**2, -1, np.int64)
-    step = np.full(resolution**2, FLOAT32_STEP)
-    hits = [np.empty((2, 0), np.int64)]
-    for _ in range(MAX_LAYERS):
-        hit = scene.run(origins[live], directions[live]).astype(np.int64)
-        live, hit = live[hit >= 0], hit[hit >= 0]
-        if len(live) == 0:
-            break
-        # The same triangle again: the step was too short. Do not count it, and step further.
-        again = last[live] == hit
-        step[live] = np.where(again, 2 * step[live], FLOAT32_STEP)
-        last[live] = hit
-        hits.append(np.stack([live, hit])[:, ~again])
-        position = _positions(vertices, faces, resolution, axis, live, hit)
-        origin = origins[live, along].astype(np.float64)
-        ahead = np.maximum(position * direction, origin * direction) + step[live]
-        origins[live, along] = ahead * direction
-    return np.concatenate(hits, axis=1)
 
 
 def _positions(
     vertices: Vertices, faces: Faces, resolution: int, axis: int, ray: Hits, triangle: Hits
 ) -> NDArray[np.float64]:
     """Intersect rays with the planes of triangles, in double precision."""
-    u, v, along = AXES[axis]
+    along = AXES[axis][2]
     corners = vertices[faces[triangle]]
-    normal = normals(corners)
-    a, ends = corners[:, 0], corners[:, :, along]
-    du = (ray // resolution + 0.5) / resolution - a[:, u]
-    dv = (ray % resolution + 0.5) / resolution - a[:, v]
+    normal, ends = normals(corners), corners[:, :, along]
+    start = points_on_rays(ray, np.float64(0), resolution, axis)
     steep = np.where(normal[:, along] == 0, 1, normal[:, along])
-    position = a[:, along] - (du * normal[:, u] + dv * normal[:, v]) / steep
+    position = np.einsum("ij,ij->i", corners[:, 0] - start, normal) / steep
     # A ray may graze a triangle that stands nearly along it: stay within its extent.
     return np.clip(position, ends.min(axis=1), ends.max(axis=1))
 

@@ -15,6 +15,7 @@ before v in the order x, y, z, so they are perturbed consistently.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,10 +31,10 @@ AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
 STRIPS = 4
-"""Strips of columns for each axis that are rasterised in parallel, at most one a thread, unless
-there is more work than `STRIP_WORK` in each."""
+"""Strips of columns for each axis, at most one a thread, unless there is more work than
+`STRIP_WORK` in each."""
 STRIP_WORK = 2_000_000
-"""Hits, or steps of a traversal, that take about a tenth of a second."""
+"""Hits that take about a tenth of a second."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,7 @@ def cast_rays(
 
     Shapes: vertices (n, 3), faces (m, 3).
     """
-    return _cast(vertices, faces, resolution, (axis,))[0]
+    return cast_all_rays(vertices, faces, resolution, axes=(axis,))[0]
 
 
 def cast_all_rays(
@@ -74,9 +75,31 @@ def cast_all_rays(
     faces: NDArray[np.int32],
     resolution: int,
     report: Tell = lambda done: None,
+    axes: Sequence[int] = (0, 1, 2),
 ) -> list[RayHits]:
     """Cast the rays along x, y and z, see `cast_rays` and `progress.Tell`."""
-    return _cast(vertices, faces, resolution, (0, 1, 2), report)
+    if len(faces) == 0:  # the caps of a closed mesh
+        start = np.zeros(resolution * resolution + 1, np.int64)
+        nothing = RayHits(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
+        return [nothing] * len(axes)
+    # Strips of columns are rasterised in parallel.
+    work = expected_hits(vertices, faces, resolution)
+    count = min(max(min(STRIPS, threads()), int(work / STRIP_WORK)), resolution)
+    bounds = list(pairwise(np.arange(count + 1) * resolution // count))
+    projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
+
+    def rasterise(strip: tuple[int, int, int]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        axis, first, last = strip
+        flip = -1 if axis == 1 else 1  # x cross z points along -y
+        return _rasterise(projected[axis], faces, resolution, flip, first, last)
+
+    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], report)
+    hits = []
+    for k in range(len(axes)):
+        parts = zip(*strips[k * count : (k + 1) * count], strict=True)
+        counts, position, triangle, sign = (np.concatenate(part) for part in parts)
+        hits.append(RayHits(np.append(0, np.cumsum(counts)), position, triangle, sign))
+    return hits
 
 
 def expected_hits(
@@ -86,37 +109,11 @@ def expected_hits(
     return resolution**2 * _projected_area(vertices, faces)
 
 
-def _cast(vertices, faces, resolution, axes, report=lambda done: None):
-    if len(faces) == 0:  # the caps of a closed mesh
-        start = np.zeros(resolution * resolution + 1, np.int64)
-        nothing = RayHits(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
-        return [nothing] * len(axes)
-    bounds = strip_bounds(resolution, expected_hits(vertices, faces, resolution))
-    projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
-
-    def rasterise(part):
-        axis, first, last = part
-        flip = -1 if axis == 1 else 1  # x cross z points along -y
-        return _rasterise(projected[axis], faces, resolution, flip, first, last)
-
-    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], report)
-    hits = []
-    for k in range(len(axes)):
-        parts = zip(*strips[k * len(bounds) : (k + 1) * len(bounds)], strict=True)
-        counts, position, triangle, sign = (np.concatenate(part) for part in parts)
-        start = np.concatenate([[0], np.cumsum(counts)])
-        hits.append(RayHits(start, position, triangle, sign))
-    return hits
-
-
-def strip_bounds(resolution: int, work: float) -> list[tuple[int, int]]:
-    """Divide the columns 0 to R - 1 into strips for parallel work."""
-    count = min(max(min(STRIPS, threads()), int(work / STRIP_WORK)), resolution)
-    return list(pairwise(np.arange(count + 1) * resolution // count))
-
-
 def points_on_rays(
-    ray: NDArray[np.integer], position: NDArray[np.float64], resolution: int, axis: int
+    ray: NDArray[np.integer],
+    position: NDArray[np.float64] | np.float64,
+    resolution: int,
+    axis: int,
 ) -> NDArray[np.float64]:
     """Return the points at positions (q,) along rays (q,) of one axis, shape (q, 3)."""
     u, v, along = AXES[axis]
