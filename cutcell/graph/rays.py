@@ -35,6 +35,8 @@ STRIPS = 4
 `STRIP_WORK` in each."""
 STRIP_WORK = 2_000_000
 """Hits that take about a tenth of a second."""
+MANY_HITS = 64
+"""Rays with more hits are sorted by numpy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,15 @@ def cast_all_rays(
     def rasterise(strip: tuple[int, int, int]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
         axis, first, last = strip
         flip = -1 if axis == 1 else 1  # x cross z points along -y
-        return _rasterise(projected[axis], faces, resolution, flip, first, last)
+        columns = _rasterise(projected[axis], faces, resolution, flip, first, last)
+        counts, position, triangle, sign = columns
+        end = np.cumsum(counts)
+        for ray in np.flatnonzero(counts > MANY_HITS):
+            hits = slice(end[ray] - counts[ray], end[ray])
+            order = np.lexsort((triangle[hits], sign[hits], position[hits]))
+            for column in columns[1:]:
+                column[hits] = column[hits][order]
+        return columns
 
     strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], report)
     hits = []
@@ -258,11 +268,8 @@ def _sort_rays(counts, position, triangle, sign):
     end = 0
     for ray in range(len(counts)):
         begin, end = end, end + counts[ray]
-        if end - begin > 64:  # a soup of many layers would make the insertion sort quadratic
-            order = begin + np.argsort(position[begin:end])
-            copy_to(position[order], position[begin:end])
-            copy_to(triangle[order], triangle[begin:end])
-            copy_to(sign[order], sign[begin:end])
+        if end - begin > MANY_HITS:  # an insertion sort would be slow
+            continue
         for k in range(begin + 1, end):
             p, t, s = position[k], triangle[k], sign[k]
             while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):

@@ -117,9 +117,10 @@ def add_clusters(clusters, among, local, q, reach, tolerance, points):
 
     `points` is a workspace.
     """
-    leaves, unscaled = len(clusters.start) - 1, 0
+    leaves, unscaled = len(clusters.start) - 1, np.int64(0)
+    count = np.int64(1)  # a literal has another type, compiled anew
     points[0], points[Y], points[Z] = q
-    clear(points, 1)
+    clear(points, count)
     for top in among:
         k, end = top, next_cluster(top)
         while k != end:
@@ -137,11 +138,11 @@ def add_clusters(clusters, among, local, q, reach, tolerance, points):
                     _add_gradient(local, rim, clusters.apex[loop], q, reach, error == np.inf)
                     if local[ERROR] > USELESS:
                         return
-                    unscaled = add_cap(rim, clusters.apex[loop], points, 1, unscaled)
+                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
             if local[ERROR] > USELESS:
                 return
             k = next_cluster(k)
-    add_arguments(points, 1)
+    add_arguments(points, count)
     local[0] += points[VALUE]
 
 

@@ -35,7 +35,7 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
 
     Shapes: points (WORKSPACE,).
     """
-    error, leaves, unscaled = 0.0, len(clusters.start) - 1, 0
+    error, leaves, unscaled = 0.0, len(clusters.start) - 1, np.int64(0)
     clear(points, count)
     for top in among:
         k, end = top, next_cluster(top)
