@@ -95,7 +95,8 @@ def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.in
         size = np.diff(bounds)
         along = np.repeat((high - low).argmax(axis=1), size)
         cluster = np.repeat(np.arange(level), size)
-        order = order[np.lexsort((ordered[np.arange(count), along], cluster))]
+        # Coordinates are below 1.
+        order = order[np.argsort(2 * cluster + ordered[np.arange(count), along], kind="stable")]
         level *= 2
     return order, start
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.triangles import normals
+from ....geometry.vectors import triangle_normal
 from ....runtime.compiled import compiled
 
 SIZE = 19
@@ -56,14 +56,8 @@ def moments_of(
     centre (2 m, 3); returns (2 m, SIZE).
     """
     leaves, count = len(leaf), len(centre)
-    y = corners - np.repeat(centre[leaves:], np.diff(leaf, append=len(corners)), axis=0)[:, None]
-    normal, total = normals(corners) / 2, y.sum(axis=1)
-    # The mean of y y over a triangle, by quadrature.
-    square = (np.einsum("tci,tcj->tij", y, y) + total[:, :, None] * total[:, None]) / 12
     n, ny, nyy = (np.zeros((count, *shape)) for shape in ((3,), (3, 3), (3, 3, 3)))
-    n[leaves:] = np.add.reduceat(normal, leaf)
-    ny[leaves:] = np.add.reduceat(normal[:, :, None] * total[:, None] / 3, leaf)
-    nyy[leaves:] = np.add.reduceat(normal[:, :, None, None] * square[:, None], leaf)
+    _add_triangles(corners, np.append(leaf, len(corners)), centre, n, ny, nyy)
     level = leaves // 2
     while level:
         child = np.arange(2 * level, 4 * level)
@@ -81,6 +75,26 @@ def moments_of(
         level //= 2
     rows = n, ny.reshape(count, 9) @ SECOND, nyy.reshape(count, 27) @ THIRD
     return _harmonic(np.concatenate(rows, axis=1))
+
+
+@compiled
+def _add_triangles(corners, bounds, centre, n, ny, nyy):
+    """Sum the normals n of the triangles of each leaf, n y and n y y, by area."""
+    leaves, y = len(bounds) - 1, np.empty((4, 3))
+    for k in range(leaves, 2 * leaves):
+        for t in range(bounds[k - leaves], bounds[k - leaves + 1]):
+            normal = triangle_normal(corners[t, 0], corners[t, 1], corners[t, 2])
+            for a in range(3):
+                for c in range(3):
+                    y[c, a] = corners[t, c, a] - centre[k, a]
+                y[3, a] = y[0, a] + y[1, a] + y[2, a]
+            for i in range(3):
+                n[k, i] += normal[i] / 2
+                for a in range(3):
+                    ny[k, i, a] += normal[i] * y[3, a] / 6
+                    for b in range(3):
+                        for c in range(4):  # quadrature
+                            nyy[k, i, a, b] += normal[i] * y[c, a] * y[c, b] / 24
 
 
 def _harmonic(p: NDArray[np.float64]) -> NDArray[np.float64]:
