@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.counting_sort import counting_sort
 from ...geometry.triangles import areas, unit_normals
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
@@ -127,41 +126,56 @@ def _samples(
     return selected[sampled], a + u * (b - a) + v * (c - a)
 
 
-@compiled
-def _escape(points, own_face, vertices, faces):
+def _escape(
+    points: NDArray[np.float64],
+    own_face: NDArray[np.intp],
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+) -> NDArray[np.bool_]:
     """Return for each point whether the rays upward and downward escape, shape (p, 2)."""
-    is_free, left, f = np.ones((len(points), 2), np.bool_), np.arange(len(points)), 0
-    while f < len(faces) and len(left):
+    is_free, left, face = np.ones((len(points), 2), np.bool_), np.arange(len(points)), 0
+    while face < len(faces) and len(left):
         columns = int(np.sqrt(CELLS_EACH * len(left))) + 1
-        column = np.empty(len(left), np.int64)
-        for k, q in enumerate(left):
-            column[k] = int(points[q, 0] * columns) * columns + int(points[q, 1] * columns)
-        start, order = counting_sort(column, columns * columns)
-        left = left[order]
-        near, own, free, hidden = points[left], own_face[left], is_free[left], 0
-        # In a soup a few faces hide nearly all points: then the others are sorted anew.
-        while f < len(faces) and 2 * hidden <= len(left):
-            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-            low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-            high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-            low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-            high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-            for i in range(int(low_u * columns), int(high_u * columns) + 1):
-                first = start[i * columns + int(low_v * columns)]
-                last = start[i * columns + int(high_v * columns) + 1]
-                for k in range(first, last):
-                    pu, pv = near[k, 0], near[k, 1]
-                    if own[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
-                        continue
-                    if not (free[k, 0] or free[k, 1]):
-                        continue
-                    span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
-                    if span_low <= pv < span_high:
-                        away = height_between(span_low, low, span_high, high, pv) - near[k, 2]
-                        if abs(away) > COINCIDENT:
-                            free[k, 0 if away > 0 else 1] = False
-                            hidden += not (free[k, 0] or free[k, 1])
-            f += 1
+        u, v = (points[left, :2] * columns).astype(np.int64).T
+        column = u * columns + v
+        left = left[np.argsort(column, kind="stable")]
+        start = np.append(0, np.cumsum(np.bincount(column, minlength=columns * columns)))
+        free = is_free[left]
+        grid = start, columns
+        face = _hide(points[left], own_face[left], free, grid, vertices, faces, face)
         is_free[left] = free
-        left = left[free[:, 0] | free[:, 1]]
+        left = left[free.any(axis=1)]
     return is_free
+
+
+@compiled
+def _hide(points, own, free, grid, vertices, faces, f):
+    """Mark the rays that faces from f on hide; stop where half of the points are hidden.
+
+    In a soup a few faces hide nearly all points. Returns the next face.
+    """
+    start, columns = grid
+    hidden = 0
+    while f < len(faces) and 2 * hidden <= len(points):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+        high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+        low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+        high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+        for i in range(int(low_u * columns), int(high_u * columns) + 1):
+            first = start[i * columns + int(low_v * columns)]
+            last = start[i * columns + int(high_v * columns) + 1]
+            for k in range(first, last):
+                pu, pv = points[k, 0], points[k, 1]
+                if own[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
+                    continue
+                if not (free[k, 0] or free[k, 1]):
+                    continue
+                span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
+                if span_low <= pv < span_high:
+                    away = height_between(span_low, low, span_high, high, pv) - points[k, 2]
+                    if abs(away) > COINCIDENT:
+                        free[k, 0 if away > 0 else 1] = False
+                        hidden += not (free[k, 0] or free[k, 1])
+        f += 1
+    return f
