@@ -28,8 +28,7 @@ STAGES = ("graph", "distances", "weights")
 def measure(case: dict) -> dict:
     """Bind one case, warm; return seconds, sizes and the peak of memory in MB."""
     import cutcell
-
-    from . import shapes
+    from cutcell_lab.benchmarks import shapes
 
     rig = shapes.make(case)
     cutcell.bind(shapes.small(), 8, connectivity=case["connectivity"])  # load what is compiled

@@ -30,7 +30,7 @@ def decide(prepared: Surface, hits: list[RayHits], threshold: float = 0.5) -> li
 def midpoints(prepared: Surface, hits: list[RayHits]) -> np.ndarray:
     """List the midpoints between the first and last hit of each ray, shape (q, 3)."""
     resolution = prepared.resolution
-    nothing = np.tile(np.int32([resolution, NONE]), (resolution**2, 1))
+    nothing = np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
     rays = np.arange(resolution**2)
     return np.concatenate(
         [

@@ -148,7 +148,7 @@ def slice_rays(
     numbers = np.arange(resolution)
     first = normal == AXES[axis][0]
     numbers = index * resolution + numbers if first else numbers * resolution + index
-    whole = np.tile(np.int32([0, resolution]), (resolution**2, 1))
+    whole = np.tile(np.array([0, resolution], np.int32), (resolution**2, 1))
     segments = divide_rays(hits, axis, resolution, numbers, whole)
     low, high = (
         np.where(is_hit, np.append(hits.position, 0.0)[hit], (segments.number + half) / resolution)

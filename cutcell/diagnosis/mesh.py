@@ -76,7 +76,7 @@ def _inverted(subject: Subject) -> Iterator[Finding]:
 
 
 def _open(subject: Subject) -> Iterator[Finding]:
-    loop, start, _ = subject.boundary
+    loop, start = subject.boundary
     if not len(loop):
         return
     lengths = np.diff(start)

@@ -87,7 +87,7 @@ def cast_all_rays(
     # Strips of columns are rasterised in parallel.
     work = expected_hits(vertices, faces, resolution)
     count = min(max(min(STRIPS, threads()), int(work / STRIP_WORK)), resolution)
-    bounds = list(pairwise(np.arange(count + 1) * resolution // count))
+    bounds = list(pairwise(k * resolution // count for k in range(count + 1)))
     projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
 
     def rasterise(strip: tuple[int, int, int]) -> tuple[NDArray, NDArray, NDArray, NDArray]:

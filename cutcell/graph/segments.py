@@ -115,7 +115,7 @@ class PointwiseWindingNumbers:
         """See `RayWindingNumbers`."""
         resolution = self.surface.resolution
         ends = (resolution, NONE) if self.surface.is_closed else (0, resolution)
-        return np.tile(np.int32(ends), (resolution**2, 1))
+        return np.tile(np.array(ends, np.int32), (resolution**2, 1))
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
         """See `RayWindingNumbers`."""

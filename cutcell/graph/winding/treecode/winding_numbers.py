@@ -67,7 +67,7 @@ class TreecodeWindingNumbers:
         """Return which lattice points may be inside before a ray's first hit or beyond its last."""
         resolution, coarse = self._surface.resolution, self._classes.coarse
         if self._surface.is_closed and self._threshold > 0:
-            return np.tile(np.int32([resolution, NONE]), (resolution**2, 1))
+            return np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
         may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
         first = BLOCK * may_be_inside.argmax(axis=2)
         last = BLOCK * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
