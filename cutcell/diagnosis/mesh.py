@@ -79,7 +79,10 @@ def _open(subject: Subject) -> Iterator[Finding]:
     loop, start = subject.boundary
     if not len(loop):
         return
-    lengths = np.diff(start)
+    # The rim of faces that lie on copies is repeated.
+    rims_once = {tuple(np.sort(rim)): rim for rim in np.split(loop, start[1:-1])}
+    loop, lengths = np.concatenate([*rims_once.values()]), np.array([*map(len, rims_once)])
+    start = np.cumsum(lengths) - lengths
     is_hole = np.zeros(len(lengths), bool)
     short = np.flatnonzero(lengths == 3)
     corners = np.sort(loop[start[short][:, None] + np.arange(3)], axis=1)
