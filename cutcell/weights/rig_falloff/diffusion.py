@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import SuperLU
+from scipy.sparse.linalg import SuperLU, splu
 
-from ...geometry.counting_sort import spatial_order
-from ...runtime.progress import Shares, Tell
+from ...runtime.compiled import compiled
+from ...runtime.progress import Tell
 from ...runtime.threads import in_threads, parts
-from .multigrid import MANY, RIGHT_SIDES, Multigrid, factorise
 from .surface_operators import SurfaceOperators
 
 SHARPNESS = 2.5
@@ -21,6 +21,36 @@ MIN_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
 MIN_SCREENING = 1e-12
 """Of the matrix's diagonal: less would be lost to rounding, and leave the matrix singular."""
+MANY = 50_000
+"""Unknowns up to which the equation is solved by factors of its matrix. The time for factors grows
+faster than the mesh."""
+NEGLIGIBLE = 1e-4
+"""Weight below which a vertex has none, if that is so of all joints that are solved for."""
+RIGHT_SIDES = 8
+"""Right sides that are solved for at once."""
+SMOOTHING_STEPS = 2
+"""Gauss-Seidel sweeps over a level, after the solution of the coarser one was taken over."""
+MIN_COARSENING = 0.7
+"""A level is the coarsest one if the next would have more than this part of its vertices."""
+STRONG = 0.08
+"""Neighbours are grouped if their matrix entry is at least this part of those on the diagonal. Those
+that are coupled more weakly may have very different weights."""
+DENSE_ROW = 100
+"""A vertex with more neighbours, as at the pole of a sphere, begins no group: it would be too large."""
+
+
+class Level(NamedTuple):
+    """An equation, and the groups of vertices that are the vertices of the next coarser level.
+
+    Parameters
+    ----------
+    matrix : csr_array, shape (k, k)
+        Symmetric and positive definite.
+    group : array, shape (k,)
+    """
+
+    matrix: csr_array
+    group: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,24 +62,29 @@ class Diffusion:
     The right side p is the surface as it was divided among the joints by distance. Each joint
     then bends the surface over a stretch about as long as the limb is thick there.
 
+    Up to `MANY` welded vertices the solution is exact. In larger meshes weights hardly vary from one
+    vertex to the next: groups of neighbours become the vertices of a coarser mesh, until they are
+    few. Its solution is taken over by all vertices of a group, and smoothed.
+
     Parameters
     ----------
     screening : array, shape (k,)
         The diagonal of M H.
-    solver : SuperLU or Multigrid
-        Of the matrix. Up to `MANY` welded vertices factors, which are exact; beyond, multigrid,
-        within 1e-3.
-    order : array, shape (k,), or None
-        In which the rows and columns of multigrid are: by place.
+    levels : tuple of Level
+        The finest first; empty for up to `MANY` welded vertices.
+    factors : SuperLU
+        Of the coarsest matrix.
 
     References
     ----------
-    Baran & Popović 2007, "Automatic rigging and animation of 3D characters", section 4.
+    Baran & Popović 2007, "Automatic rigging and animation of 3D characters", section 4. Vanek,
+    Mandel & Brezina 1996, "Algebraic multigrid by smoothed aggregation for second and fourth order
+    elliptic problems" (the groups).
     """
 
     screening: NDArray[np.float64]
-    solver: SuperLU | Multigrid
-    order: NDArray[np.intp] | None = None
+    levels: tuple[Level, ...]
+    factors: SuperLU
 
     @classmethod
     def over(
@@ -59,15 +94,28 @@ class Diffusion:
         depth = np.maximum(depth, MIN_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
         screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
-        start, column, value = surface.stiffness
-        value, diagonal = value.copy(), start[:-1]
-        screening = np.maximum(screening, MIN_SCREENING * value[diagonal])
-        value[diagonal] += screening
-        matrix = csr_array((value, column, start), (len(screening),) * 2)
-        if len(screening) <= MANY:
-            return cls(screening, factorise(matrix))
-        order = spatial_order(surface.points)
-        return cls(screening, Multigrid.of(matrix[order][:, order]), order)
+        start, _, value = surface.stiffness
+        screening = coarse = np.maximum(screening, MIN_SCREENING * value[start[:-1]])
+        levels: list[Level] = []
+        while True:
+            start, column, value = surface.stiffness
+            value = value.copy()
+            value[start[:-1]] += coarse
+            matrix = csr_array((value, column, start), (len(coarse),) * 2)
+            if len(coarse) <= MANY:
+                break
+            group, groups = _group(*surface.stiffness)
+            if groups > MIN_COARSENING * len(coarse):
+                break
+            levels.append(Level(matrix, group))
+            size, coarse = np.bincount(group), np.bincount(group, coarse)
+            points = [np.bincount(group, axis) / size for axis in surface.points.T]
+            surface = SurfaceOperators.over(np.stack(points, axis=1), group[surface.faces])
+        # Of many unknowns the minimum degree takes SuperLU minutes to find.
+        order = "MMD_AT_PLUS_A" if matrix.shape[0] <= MANY else "COLAMD"
+        options = {"SymmetricMode": True}
+        factors = splu(matrix.tocsc(), order, diag_pivot_thresh=0.0, options=options)
+        return cls(screening, tuple(levels), factors)
 
     def spread(
         self, weights: NDArray[np.float64], report: Tell = lambda done: None
@@ -75,7 +123,6 @@ class Diffusion:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
         spread = self.equilibrium(weights, report)
         self.normalise(spread, weights)
-        report(1.0)
         return spread
 
     def normalise(self, spread: NDArray[np.float64], weights: NDArray[np.float64]) -> None:
@@ -108,29 +155,75 @@ class Diffusion:
         spread: NDArray[np.float64],
         report: Tell = lambda done: None,
     ) -> None:
-        """Write the equilibrium of the weights of some joints into their columns, zeros before."""
+        """Write the equilibrium of the weights of some joints into their columns."""
+
+        def solve(group: NDArray[np.intp]) -> None:
+            solution = self._solve(self.screening[:, None] * weights[:, group])
+            spread[:, group] = np.maximum(solution, 0.0, out=solution)
+
         groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]
-        shares = Shares(lambda stage, done: report(done), "weights", len(groups))
+        in_threads(solve, groups, report)
 
-        def solve(group: int) -> None:
-            self._solve(groups[group], weights, spread, lambda done: shares.tell(group, done))
-            shares.tell(group, 1.0)
+    def _solve(self, right: NDArray[np.float64], level: int = 0) -> NDArray[np.float64]:
+        """Solve for right sides (k, s) on one level."""
+        if level == len(self.levels):
+            return self.factors.solve(right)
+        matrix, group = self.levels[level]
+        sums = csr_array((np.ones(len(group)), group, np.arange(len(group) + 1, dtype=np.int32)))
+        x = self._solve(sums.T @ right, level + 1)[group]
+        for _ in range(SMOOTHING_STEPS):
+            _smooth(matrix.indptr, matrix.indices, matrix.data, right, x)
+        return x
 
-        in_threads(solve, range(len(groups)))
 
-    def _solve(
-        self,
-        joints: NDArray[np.intp],
-        weights: NDArray[np.float64],
-        spread: NDArray[np.float64],
-        report: Tell,
-    ) -> None:
-        """Solve for the weights of at most `RIGHT_SIDES` joints, into `spread`."""
-        right = self.screening[:, None] * weights[:, joints]
-        if self.order is None or isinstance(self.solver, SuperLU):
-            spread[:, joints] = np.maximum(self.solver.solve(right), 0.0)
-            return
-        padded = np.zeros((len(weights), RIGHT_SIDES))
-        padded[:, : len(joints)] = right[self.order]
-        rows, solution = self.solver.solve(padded, report)
-        spread[self.order[rows][:, None], joints] = np.maximum(solution[:, : len(joints)], 0.0)
+@compiled
+def _smooth(start, column, value, right, x):
+    """Improve a solution (k, s) by a Gauss-Seidel sweep; the diagonal comes first in each row."""
+    for v in range(len(x)):
+        diagonal, largest = value[start[v]], 0.0
+        for i in range(x.shape[1]):
+            largest = max(largest, x[v, i], right[v, i] / diagonal)
+            x[v, i] = 0.0
+        if largest < NEGLIGIBLE:  # as on most of a character
+            continue
+        for e in range(start[v] + 1, start[v + 1]):
+            for i in range(x.shape[1]):
+                x[v, i] -= value[e] * x[column[e], i]
+        for i in range(x.shape[1]):
+            x[v, i] = (x[v, i] + right[v, i]) / diagonal
+
+
+@compiled
+def _group(start, column, value):
+    """Group neighbours that are strongly coupled; return each unknown's group, and their number.
+
+    A group begins as an unknown and all of its neighbours, where none of them is in a group yet.
+    Those left over join the group of a neighbour, or form one by themselves.
+    """
+    count = len(start) - 1
+    group, groups = np.full(count, -1, np.int32), 0
+    for v in range(count):
+        is_free = start[v + 1] - start[v] <= DENSE_ROW
+        for e in range(start[v], start[v + 1]):
+            is_free &= group[column[e]] < 0 or not _is_strong(start, value, v, e, column[e])
+        if is_free:
+            for e in range(start[v], start[v + 1]):
+                if _is_strong(start, value, v, e, column[e]):
+                    group[column[e]] = groups
+            groups += 1
+    seeds = group.copy()
+    for v in range(count):
+        if seeds[v] < 0:
+            for e in range(start[v], start[v + 1]):
+                if _is_strong(start, value, v, e, column[e]):
+                    group[v] = max(group[v], seeds[column[e]])
+            if group[v] < 0:
+                group[v] = groups
+                groups += 1
+    return group, groups
+
+
+@compiled(inline="always")
+def _is_strong(start, value, v, e, u):
+    """Return whether the entry e of unknowns v and u is large, beside those on the diagonal."""
+    return value[e] * value[e] >= STRONG * STRONG * value[start[v]] * value[start[u]]

@@ -31,6 +31,8 @@ MIN_RADIUS = 0.5
 CONNECTED = 0.02
 """Of the longest side: a bone that ends as near as this to where another joint's bone begins leads
 on to it."""
+MANY = 200_000
+"""Vertices whose distances are sorted to measure radii; of more, these are a sample."""
 NEAREST = 3
 """Bones that a vertex has straight distances to where all measured joints are barred from it."""
 MIN_SHARE = 1e-3
@@ -95,8 +97,9 @@ class Division:
         radius = _radii(weights, distance, surface.areas, distances.bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
-        beyond = np.empty(vertices, np.bool_)
-        _mark_beyond(distance, weights, radius, beyond)
+        beyond = np.zeros(vertices, np.bool_)
+        for j in np.flatnonzero(np.isfinite(radius)):
+            beyond |= (distance[j] > radius[j]) & (weights[:, j] > MIN_SHARE)
         _divide(distances, surface, penalty, radius, beyond, weights)
         return cls(distances, surface, containment, penalty, radius, beyond, weights)
 
@@ -189,16 +192,6 @@ def _without_barred(
 
 
 @no_refcount
-def _mark_beyond(distance, weights, radius, beyond):
-    """Mark the vertices, shape (k,), with a share of a joint that are beyond its radius."""
-    for v in range(len(weights)):
-        beyond[v] = False
-        for j in range(len(distance)):
-            if weights[v, j] > MIN_SHARE and distance[j, v] > radius[j]:
-                beyond[v] = True
-
-
-@no_refcount
 def _facing(point, normal, start, end, first, last):
     """Return how much a surface looks away from the nearest of some bones, `FACING_LEAST` to 1."""
     nearest, cosine = np.inf, 0.0
@@ -228,6 +221,8 @@ def _radii(
     chin, is not the neck's even if no other bone is nearer. Where a leaf bone ends is only a
     guess, so that its surface may be at any distance: its radius is infinite.
     """
+    step = -(-len(weights) // MANY)
+    weights, distance, areas = weights[::step], distance[:, ::step], areas[::step]
     entry = np.flatnonzero(weights > MIN_SHARE)
     vertex, joint = np.divmod(entry, len(distance))
     length, area = distance[joint, vertex], weights.ravel()[entry] * (areas[vertex] + 1e-12)
