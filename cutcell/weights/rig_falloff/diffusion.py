@@ -33,10 +33,11 @@ SMOOTHING_STEPS = 2
 MIN_COARSENING = 0.7
 """A level is the coarsest one if the next would have more than this part of its vertices."""
 STRONG = 0.08
-"""Neighbours are grouped if their matrix entry is at least this part of those on the diagonal. Those
-that are coupled more weakly may have very different weights."""
+"""Neighbours are grouped if their entry is at least this part of those on the diagonal. Those that
+are coupled more weakly may have very different weights."""
 DENSE_ROW = 100
-"""A vertex with more neighbours, as at the pole of a sphere, begins no group: it would be too large."""
+"""A vertex with more neighbours, as at the pole of a sphere, begins no group: that would be too
+large."""
 
 
 class Level(NamedTuple):
@@ -62,9 +63,9 @@ class Diffusion:
     The right side p is the surface as it was divided among the joints by distance. Each joint
     then bends the surface over a stretch about as long as the limb is thick there.
 
-    Up to `MANY` welded vertices the solution is exact. In larger meshes weights hardly vary from one
-    vertex to the next: groups of neighbours become the vertices of a coarser mesh, until they are
-    few. Its solution is taken over by all vertices of a group, and smoothed.
+    Up to `MANY` welded vertices the solution is exact. In larger meshes weights hardly vary from
+    one vertex to the next: groups of neighbours become the vertices of a coarser mesh, until they
+    are few. Its solution is taken over by all vertices of a group, and smoothed.
 
     Parameters
     ----------
