@@ -103,35 +103,39 @@ def _islands(
     at_welded, area = weights[first], subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
+    least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
     for j in np.flatnonzero(measurable & (at_welded.max(axis=0) > NOTICED)).tolist():
         follows = at_welded[:, j] > NOTICED
-        between = edges[follows[edges].all(axis=1)]
+        influenced = np.flatnonzero(follows)
+        number[influenced] = np.arange(len(influenced))
+        between = number[edges[follows[edges[:, 0]] & follows[edges[:, 1]]]]
         ones = np.ones(len(between), np.int8)
-        graph = coo_array((ones, tuple(between.T)), shape=(len(follows),) * 2)
+        graph = coo_array((ones, tuple(between.T)), shape=(len(influenced),) * 2)
         label = connected_components(graph, directed=False)[1]
-        total = np.bincount(label[follows], (at_welded[:, j] * area)[follows], label.max() + 1)
+        total = np.bincount(label, (at_welded[:, j] * area)[influenced])
         # An island is away from a larger region of the same joint on the same component.
-        of = subject.component
+        of = subject.component[influenced]
         largest = np.zeros(of.max() + 1)
-        np.maximum.at(largest, of[follows], total[label[follows]])
-        islands = np.flatnonzero(follows & (total[label] < largest[of]))
+        np.maximum.at(largest, of, total[label])
+        is_island = total[label] < largest[of]
+        islands, label = influenced[is_island], label[is_island]
         if not len(islands):
             continue
         through = through_body(subject, distances, first[islands], np.full(len(islands), j))
-        beyond = through - distances.at_welded.min(axis=0)[islands]
-        nearest = np.full(label.max() + 1, np.inf)
-        np.minimum.at(nearest, label[islands], np.where(np.isfinite(beyond), beyond, -np.inf))
-        islands = islands[nearest[label[islands]] > AWAY]
+        beyond = through - least[islands]
+        nearest = np.full(len(total), np.inf)
+        np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))
+        is_away = nearest[label] > AWAY
+        islands, label = islands[is_away], label[is_away]
         if not len(islands):
             continue
         most = float(at_welded[islands, j].max())
-        number = len(np.unique(label[islands]))
         joints.append(j)
         places.append(islands)
         worst = max(worst, (most, j))
         lines.append(
             f"{shown_name(subject.rig.skeleton.names[j])}: up to {most:.0%} on "
-            f"{count(number, 'island')} of {count(len(islands), 'vertex')}"
+            f"{count(len(np.unique(label)), 'island')} of {count(len(islands), 'vertex')}"
         )
     if not joints:
         return

@@ -72,6 +72,7 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaul
     area = np.linalg.norm(at_first, axis=1).sum()
     closed = _closed_faces(subject)
     volume = _volume(points[closed])
+    number = np.zeros(len(points), np.intp)
     turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
     for j, joint in enumerate(joints):
         moved = shares[:, skeleton.subtree[j]].sum(axis=1)
@@ -86,21 +87,28 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaul
         changing = closed[(high > 0) & (low < ALL)]
         before, around, ends = at_first[unlike], faces[unlike], edges[bent]
         follow = moved[around].mean(axis=1)[:, None]
-        arms = points - joint
-        enclosed = _volume(arms[changing])
+        # Only the vertices of these edges and faces are posed.
+        is_posed = np.zeros(len(points), bool)
+        for rows in (ends, around, changing):
+            is_posed[rows] = True
+        posed_vertices = np.flatnonzero(is_posed)
+        number[posed_vertices] = np.arange(len(posed_vertices))
+        local_ends, local_faces, local_changing = number[ends], number[around], number[changing]
+        arms, by = points[posed_vertices] - joint, moved[posed_vertices, None]
+        enclosed = _volume(arms[local_changing])
         for axis, degrees, turn in turns:
-            posed = arms + moved[:, None] * (arms @ (turn - np.eye(3)).T)
-            longer = _lengths(posed[ends]) - length[bent]
+            posed = arms + by * (arms @ (turn - np.eye(3)).T)
+            longer = _lengths(posed[local_ends]) - length[bent]
             torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * length[bent])
             expected = before + follow * (before @ turn.T - before)
-            over = np.einsum("ij,ij->i", normals(posed[around]), expected) < 0
+            over = np.einsum("ij,ij->i", normals(posed[local_faces]), expected) < 0
             yield _PoseFaults(
                 Pose(j, axis, degrees),
                 np.unique(ends[torn]),
                 float(longer[torn].max(initial=0)),
                 unlike[over],
                 float(np.linalg.norm(before[over], axis=1).sum() / area),
-                (enclosed - _volume(posed[changing])) / volume if volume > 0 else 0.0,
+                (enclosed - _volume(posed[local_changing])) / volume if volume > 0 else 0.0,
             )
 
 
