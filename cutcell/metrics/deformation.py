@@ -12,8 +12,7 @@ from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from ..rig.checks import check_choice, check_number
 from ..runtime.progress import Progress, silent
-from .counting import vertex_shares
-from .weight_error import checked_pair
+from .weight_error import checked_pair, vertex_shares
 
 AXES = ("x", "y", "z")
 Turned = Literal["deform", "all"]

@@ -1,16 +1,55 @@
-"""Errors of the weights themselves (paper section 4.3)."""
+"""Errors of weights (paper section 4.3)."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import WeightsError
-from ..rig.checks import check_number
-from .counting import checked_shares
+from ..errors import ParameterError, WeightsError
+from ..geometry.weld import WELD_TOLERANCE, weld
+from ..rig import TriangleMesh
+from ..rig.checks import check_choice
 
+COUNTS = ("welded", "vertices")
+THRESHOLD = 0.001
+"""A joint moves a vertex if its weight is greater."""
 SUM_TOLERANCE = 1e-3
 """Weights stored in 8 bits sum to one within this."""
+
+
+def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float64]:
+    """Return each vertex's share of a mean over the mesh.
+
+    Exporters split a vertex at every texture seam. Counted as they are in the file, seams
+    would weigh two and three times as much as the skin between them.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    count : {"welded", "vertices"}
+        "welded": every welded vertex counts once, the file's vertices share it evenly.
+        "vertices": every vertex of the file counts the same. Vertices that no face uses count
+        nothing.
+
+    Returns
+    -------
+    array, shape (n,), float64
+        Sums to one.
+
+    Raises
+    ------
+    ParameterError
+        An unknown `count`.
+    """
+    check_choice("count", count, COUNTS)
+    share = np.zeros(len(mesh.vertices))
+    used = np.unique(mesh.faces)
+    share[used] = 1.0
+    if count == "welded":
+        low, high = mesh.bounds
+        welded = weld(mesh.vertices[used], WELD_TOLERANCE * float((high - low).max()))[1]
+        share[used] = 1.0 / np.bincount(welded)[welded]
+    return share / share.sum()
 
 
 def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | None = None) -> float:
@@ -47,7 +86,6 @@ def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | No
 def precision_recall(
     predicted: ArrayLike,
     reference: ArrayLike,
-    threshold: float = 0.001,
     shares: ArrayLike | None = None,
 ) -> tuple[float, float]:
     """Compare which joints move which vertices, whatever the amounts.
@@ -55,8 +93,6 @@ def precision_recall(
     Parameters
     ----------
     predicted, reference : array_like, shape (n, j)
-    threshold : float
-        A joint moves a vertex if its weight is greater.
     shares : array_like, shape (n,), optional
         How much each vertex counts; evenly when left out.
 
@@ -77,10 +113,9 @@ def precision_recall(
     ----------
     Paper section 4.3, with its threshold.
     """
-    threshold = check_number("threshold", threshold, 0, 1)
     weights, targets = checked_pair(predicted, reference)
     share = checked_shares(shares, len(weights))
-    influences, expected = weights > threshold, targets > threshold
+    influences, expected = weights > THRESHOLD, targets > THRESHOLD
     both = share @ (influences & expected).sum(axis=1)
     of_predicted, of_reference = share @ influences.sum(axis=1), share @ expected.sum(axis=1)
     nan = float("nan")
@@ -139,3 +174,15 @@ def checked_weights(weights: ArrayLike, name: str) -> NDArray[np.float64]:
             f"{total[bad[0]]:.6g} instead of 1; {len(bad)} of {len(array)} vertices are so"
         )
     return array
+
+
+def checked_shares(shares: ArrayLike | None, count: int) -> NDArray[np.float64]:
+    """Return shares of `count` vertices that sum to one; even ones for None."""
+    if shares is None:
+        return np.full(count, 1.0 / count)
+    array = np.asarray(shares, np.float64)
+    if array.shape != (count,):
+        raise ParameterError(f"shares have the shape {array.shape}, expected ({count},)")
+    if not (np.isfinite(array) & (array >= 0)).all() or array.sum() == 0:
+        raise ParameterError("shares must be finite, not negative, and not all zero")
+    return array / array.sum()

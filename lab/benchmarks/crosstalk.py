@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.graph import build_graph
-from cutcell.metrics import crosstalk, find_gaps
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.metrics import crosstalk, find_gaps
 
 from .document import fill
 from .rigs import ROOT

@@ -7,24 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..pose import linear_blend_skinning
-from ..rig import Rig
-from ..rig.checks import check_integer
-from .counting import vertex_shares
-from .deformation import CM2, check_fit, longest_side
-from .weight_error import checked_pair
+from cutcell.metrics.deformation import CM2, check_fit, longest_side
+from cutcell.metrics.weight_error import checked_pair, vertex_shares
+from cutcell.pose import linear_blend_skinning
+from cutcell.rig import Rig
+
+FRAMES = 24
+"""Frames of each clip that are compared, evenly spread, at most."""
 
 
 @dataclass(frozen=True)
 class ClipError:
-    """How far two sets of weights part while a clip plays; cm², the longest side being 1 m.
+    """Difference of two sets of weights while a clip plays; cm², the longest side being 1 m.
 
     Parameters
     ----------
     name : str
-        Of the clip.
+        Name of the clip.
     frames : int
-        How many frames were compared.
+        Number of compared frames.
     mean : float
         Squared distance, averaged over frames and vertices.
     largest : float
@@ -43,7 +44,6 @@ def clip_error(
     predicted: ArrayLike,
     reference: ArrayLike,
     *,
-    frames: int = 24,
     count: str = "welded",
 ) -> tuple[ClipError, ...]:
     """Play every clip of a rig with both weights and compare where the surface goes.
@@ -53,8 +53,6 @@ def clip_error(
     rig : Rig
     predicted, reference : array_like, shape (n, j)
         Rows sum to one, or to zero: such vertices stay at their rest position.
-    frames : int
-        Frames compared of each clip, evenly spread, at most.
     count : {"welded", "vertices"}
         See `vertex_shares`.
 
@@ -70,18 +68,17 @@ def clip_error(
     WeightsError
         Weights that do not fit the rig or each other.
     ParameterError
-        `frames` out of range, or an unknown `count`.
+        An unknown `count`.
     """
     rig.require_joints()
     weights, targets = checked_pair(predicted, reference)
     check_fit(weights, rig.mesh, rig.skeleton)
-    frames = check_integer("frames", frames, 1, 100_000)
     share = vertex_shares(rig.mesh, count)
     unit = CM2 / longest_side(rig.mesh) ** 2
     errors = []
     for clip in rig.clips:
         times = clip.times
-        chosen = np.unique(np.linspace(0, len(times) - 1, frames).round().astype(int))
+        chosen = np.unique(np.linspace(0, len(times) - 1, FRAMES).round().astype(int))
         chosen = chosen[chosen >= 0]
         largest, total = np.zeros(len(weights)), 0.0
         for frame in chosen:

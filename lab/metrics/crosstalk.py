@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
-from ..errors import ParameterError
-from ..graph import CutCellGraph
-from ..rig.checks import check_integer, check_number
-from .weight_error import checked_weights
+from cutcell.errors import ParameterError
+from cutcell.graph import CutCellGraph
+from cutcell.metrics.weight_error import checked_weights
+from cutcell.rig.checks import check_integer, check_number
 
 NEAR = 0.05
 """Of the longest side: vertices within it face each other across a gap."""

@@ -14,10 +14,7 @@ from cutcell.graph import build_graph
 from cutcell.metrics import (
     TURNED,
     Turned,
-    clip_error,
-    crosstalk,
     deformation_error,
-    find_gaps,
     precision_recall,
     unweighted,
     vertex_shares,
@@ -27,6 +24,7 @@ from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 
+from ...metrics import clip_error, crosstalk, find_gaps
 from .. import METHODS, Baseline, BaselineBinding
 from ..methods import known_options
 from .scores import Comparison, MethodScore, RigScore

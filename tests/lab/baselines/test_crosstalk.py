@@ -4,9 +4,9 @@ import pytest
 
 import cutcell
 from cutcell.graph import build_graph
-from cutcell.metrics import crosstalk, find_gaps
 from cutcell_lab.baselines import METHODS
 from cutcell_lab.benchmarks.crosstalk import PLACES, bound, gaps, strongest
+from cutcell_lab.metrics import crosstalk, find_gaps
 from tests.bars import fork
 
 OURS = sorted(name for name in METHODS if name.startswith("cutcell"))

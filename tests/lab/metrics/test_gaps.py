@@ -5,7 +5,7 @@ import pytest
 
 from cutcell import ParameterError, TriangleMesh
 from cutcell.graph import build_graph
-from cutcell.metrics import crosstalk, find_gaps
+from cutcell_lab.metrics import crosstalk, find_gaps
 from tests import meshes
 
 
@@ -71,3 +71,11 @@ def test_a_search_for_gaps_needs_sense():
     graph = build_graph(TriangleMesh(*meshes.ball(1)), 8)
     with pytest.raises(ParameterError, match="far must be"):
         find_gaps(graph, near=0.5, far=0.1)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"), [([[0, 1, 2]], "expected \\(p, 2\\)"), ([[0, 99]], "beyond")]
+)
+def test_pairs_are_of_vertices_with_weights(pairs, words):
+    with pytest.raises(ParameterError, match=words):
+        crosstalk(np.ones((3, 1)), pairs)
