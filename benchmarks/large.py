@@ -2,15 +2,16 @@
 
 python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--exact 2] [--markdown OUT]
 
-The rig's triangles are quartered again and again. Many vertices are solved for by multigrid
-(`cutcell/weights/rig_falloff/multigrid.py`); the exact weights are those by factors of the whole
-matrix, from the same distances.
+The rig's triangles are quartered again and again. Weights of many vertices come from coarser meshes
+(`cutcell/weights/rig_falloff/diffusion.py`); the exact weights are those by factors of the whole
+matrix, from the same distances. `diagnose` checks the rig with its new weights.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter, process_time
 from unittest.mock import patch
@@ -25,6 +26,7 @@ from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from cutcell_lab.benchmarks.rigs import ROOT
 from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
+from .growth import peak_memory, slope
 from .report import circumstances
 
 STAGES = ("graph", "distances", "weights")
@@ -41,7 +43,7 @@ def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
 
 def exact_weights(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights, before they are pruned, by factors of the whole matrix."""
-    with patch.object(diffusion, "MANY", np.inf):
+    with patch.object(diffusion, "MIN_COARSENING", 0):
         return unpruned(binding, SurfaceOperators.of(binding.graph))
 
 
@@ -50,35 +52,65 @@ def unpruned(binding: cutcell.Binding, surface: SurfaceOperators) -> np.ndarray:
     return cutcell.skinning_weights(binding.distances, surface=surface, threshold=0)
 
 
-def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
-    """Bind a rig; return its size, times, and the difference from exact weights if compared."""
-    begin, begin_processor = perf_counter(), process_time()
+@dataclass
+class Measured:
+    """One size: seconds by stage, processor seconds of the weights, and their difference."""
+
+    faces: int
+    seconds: dict[str, float]
+    processor: float
+    peak: float
+    diagnosis: float
+    difference: np.ndarray | None
+
+    def row(self) -> list[str]:
+        """Return the cells of a table."""
+        times = [*(self.seconds[name] for name in STAGES), self.processor, self.diagnosis]
+        cells = [f"{self.faces:,}", *map(seconds, times), f"{self.peak:,.0f} MB"]
+        if self.difference is None:
+            return [*cells, "-", "-"]
+        return [*cells, f"{self.difference.sum(axis=1).mean():.4f}", f"{self.difference.max():.2f}"]
+
+
+def measure(rig: cutcell.Rig, is_compared: bool) -> Measured:
+    """Bind and diagnose a rig; compare its weights with exact ones if wanted."""
     binding = cutcell.bind(rig)
-    took, by_processor = perf_counter() - begin, process_time() - begin_processor
-    cells = [f"{len(rig.mesh.faces):,}", *(seconds(binding.seconds[name]) for name in STAGES)]
-    cells += [seconds(took), seconds(by_processor)]
-    if not is_compared:
-        return [*cells, "-", "-"]
+    begin = process_time()
+    cutcell.skinning_weights(binding.distances)
+    processor, peak = process_time() - begin, peak_memory()
     begin = perf_counter()
-    exact = exact_weights(binding)
-    took = perf_counter() - begin
-    outcome = unpruned(binding, SurfaceOperators.of(binding.graph))
-    return [*cells, seconds(took), f"{np.abs(outcome - exact).max():.1e}"]
+    cutcell.diagnose(rig.with_weights(binding.weights))
+    diagnosis = perf_counter() - begin
+    difference = None
+    if is_compared:
+        outcome = unpruned(binding, SurfaceOperators.of(binding.graph))
+        difference = np.abs(outcome - exact_weights(binding))
+    sizes = len(rig.mesh.faces), binding.seconds
+    return Measured(*sizes, processor, peak, diagnosis, difference)
 
 
 def tables(options: argparse.Namespace) -> list[Table]:
     """Measure one rig at several sizes."""
     rig = cutcell.load(options.rig)
-    cutcell.bind(quartered(rig, min(2, max(options.times))))  # load what it calls
+    small = quartered(rig, min(2, max(options.times)))
+    cutcell.diagnose(small.with_weights(cutcell.bind(small).weights))  # load what they call
     table = Table(
         "Large meshes",
-        ["faces", *STAGES, "all", "processor time", "exact weights", "largest difference"],
-        f"`bind`, warm, R=64, {options.rig.stem}, its triangles quartered again and again. Weights "
-        "before pruning, of each vertex and joint, beside those by factors of the whole matrix. "
-        + circumstances(),
-    )
-    for times in options.times:
-        table.add(*row(quartered(rig, times), times <= options.exact))
+        ["faces", *STAGES, "weights, processor time", "diagnose", "peak memory of bind",
+         "mean difference", "largest"],
+        f"`bind`, warm, R=64, {options.rig.stem}, its triangles quartered again and again. "
+        "Differences from the weights by factors of the whole matrix, before pruning: the sum over "
+        "the joints of the mean vertex, and the largest of any vertex and joint. Slope s: value ~ "
+        "faces^s over the three largest. " + circumstances(),
+    )  # fmt: skip
+    sizes = [measure(quartered(rig, times), times <= options.exact) for times in options.times]
+    for size in sizes:
+        table.add(*size.row())
+    faces = [size.faces for size in sizes]
+    slopes = [slope(faces, [size.seconds[name] for size in sizes]) for name in STAGES]
+    slopes += [slope(faces, [getattr(size, name) for size in sizes])
+               for name in ("processor", "diagnosis", "peak")]  # fmt: skip
+    table.add("**slope**", *(f"{value:.2f}" for value in slopes), "-", "-")
     return [table]
 
 

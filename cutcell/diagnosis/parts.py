@@ -16,8 +16,7 @@ from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
 from ..runtime.display import shown_name
-from ..weights.rig_falloff.components import bone_containment
-from ..weights.rig_falloff.rigid_accessories import SMALL
+from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
 from .finding import Finding, count, share
 from .subject import Subject
 
@@ -130,7 +129,7 @@ def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding
     lost = np.flatnonzero((distances.fallback == UNREACHED) & subject.is_used)
     if len(lost):
         pieces = np.unique(subject.component[subject.welded[lost]])
-        sizes = _longest_sides(subject)
+        sizes = longest_sides(subject.points, subject.component)
         large = pieces[sizes[pieces] > SMALL]
         follows = (
             "they follow their nearest bones in a straight line"
@@ -179,14 +178,6 @@ def _loose(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
         vertices=subject.vertices_at(mask[subject.component]),
         details=_lines(subject, loose),
     )
-
-
-def _longest_sides(subject: Subject) -> NDArray[np.float64]:
-    low = np.full((int(subject.component.max()) + 1, 3), np.inf)
-    high = -low
-    np.minimum.at(low, subject.component, subject.points)
-    np.maximum.at(high, subject.component, subject.points)
-    return (high - low).max(axis=1)
 
 
 def _lines(subject: Subject, pieces: NDArray[np.integer]) -> tuple[str, ...]:

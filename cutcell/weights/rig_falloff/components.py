@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geodesics import Bones
-from ...geometry.counting_sort import counting_sort
 from ...geometry.union_find import labels, union
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads
@@ -81,28 +80,19 @@ def _intersect(
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    start, order = _sort_into_columns(samples)
+    cell = np.clip((samples[:, :2] * CELLS).astype(np.int64), 0, CELLS - 1)
+    column = cell[:, 0] * CELLS + cell[:, 1]
+    order = np.argsort(column, kind="stable")
+    start = np.searchsorted(column[order], np.arange(CELLS * CELLS + 1))
     samples = samples[order]
     room = 8 * len(samples)
     while True:
-        face, sample, sign = (
-            np.empty(room, np.int64),
-            np.empty(room, np.int64),
-            np.empty(room, np.int8),
-        )
+        face, sample = np.empty((2, room), np.int64)
+        sign = np.empty(room, np.int8)
         count = _list_hits(points, faces, samples, start, face, sample, sign)
         if count <= room:
             return face[:count], order[sample[:count]], sign[:count]
         room = count
-
-
-@compiled
-def _sort_into_columns(samples):
-    """Return where the samples of each column of the grid begin, and their order."""
-    column = np.empty(len(samples), np.int64)
-    for s in range(len(samples)):
-        column[s] = _cell(samples[s, 0]) * CELLS + _cell(samples[s, 1])
-    return counting_sort(column, CELLS * CELLS)
 
 
 @no_refcount

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.compiled import no_refcount
 from ...runtime.progress import share_of
 from ...runtime.threads import run_parallel
 from ..context import Context, Step
@@ -50,8 +49,11 @@ def with_rigid_parts(context: Context) -> NDArray[np.float64]:
 
 def without_tail(context: Context) -> NDArray[np.float64]:
     """Subtract a part of each vertex's largest weight from all of them, in place."""
-    _subtract_tail(context.weights)
-    return context.weights
+    weights = context.weights
+    weights -= TAIL * weights.max(axis=1, keepdims=True)
+    np.maximum(weights, 0.0, out=weights)
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights
 
 
 RIG_STEPS = (
@@ -60,17 +62,3 @@ RIG_STEPS = (
     Step("rigid", with_rigid_parts),
     Step("tail", without_tail),
 )
-
-
-@no_refcount
-def _subtract_tail(weights):
-    for v in range(len(weights)):
-        largest = 0.0
-        for j in range(weights.shape[1]):
-            largest = max(largest, weights[v, j])
-        total = 0.0
-        for j in range(weights.shape[1]):
-            weights[v, j] = max(weights[v, j] - TAIL * largest, 0.0)
-            total += weights[v, j]
-        for j in range(weights.shape[1]):
-            weights[v, j] /= total
