@@ -13,13 +13,13 @@ from .finding import Finding, count
 from .subject import Subject
 
 WIDE = 1e-3
-"""Of the longest side: a crack is no wider."""
+"""Maximum width of a crack, as part of the longest side."""
 OF_AN_EDGE = 0.25
-"""Of the rims' edges, in the median: nor is it wider than this."""
+"""Maximum width of a crack, as part of the median edge of rims."""
 FEWEST = 6
 """Edges of rims that meet once the crack is closed."""
 MANY = 0.25
-"""Of all edges of rims: fewer may be strips of hair or cloth that were laid side by side."""
+"""Part of all edges of rims: fewer may be strips of hair or cloth that lie side by side."""
 
 
 def find_cracks(subject: Subject) -> Iterator[Finding]:
@@ -36,7 +36,7 @@ def find_cracks(subject: Subject) -> Iterator[Finding]:
     _, group = weld(points[rim], wide)
     a, b = group[np.searchsorted(rim, loop)], group[np.searchsorted(rim, following)]
     # An edge of a rim is closed by one that runs the other way between the same places, if the
-    # surface goes on beyond it: the two rims of a double wall are no crack.
+    # surface continues beyond it: the two rims of a double wall are no crack.
     key = np.minimum(a, b) * np.int64(len(rim)) + np.maximum(a, b)
     _, which = np.unique(key, return_inverse=True)
     normals = _normals(subject, loop, following)

@@ -13,9 +13,9 @@ from .finding import Finding, count
 from .subject import Subject
 
 OUTSIDE, FAR_OUTSIDE = 0.05, 0.15
-"""Of the longest side: distances from the body of a note and of a warning."""
+"""Distances from the body of a note and of a warning, as parts of the longest side."""
 SAME = 1e-5
-"""Of the longest side: joints this near to each other lie in one place."""
+"""Distance of coincident joints, as part of the longest side."""
 MAX_LINES = 40
 
 

@@ -19,18 +19,18 @@ from .subject import Subject
 from .weights import CLEANED, NOTICED, through_body
 
 STRAY = 0.002
-"""Of all weight: a joint that holds less in the file was hardly meant to move skin."""
+"""Part of all weight: a joint with less in the file was hardly meant to move skin."""
 OWNED = 0.01
-"""Of the surface, that such a joint is nearest to: a binding would give it about as much."""
+"""Part of the surface that is nearest to such a joint: a binding would give it about as much."""
 LEADING = 0.5
 """A joint with more weight than this somewhere has a part to move, however small."""
 AWAY = 0.1
-"""Of the longest side: where a joint is so much farther through the body than the nearest one, an
-island of its influence is no part of the limb that it moves."""
+"""Part of the longest side: where a joint is this much farther than the nearest one, an island
+of its influence is no part of the limb that it moves."""
 UNLIKE = 0.25
-"""Of its weight that a vertex gives to other joints than its mirror image does."""
+"""Part of a vertex's weight on other joints than those of its mirror image."""
 ASYMMETRIC = 0.01
-"""Of the vertices that may differ as much: artists mend single ones."""
+"""Part of the vertices that may differ as much: artists mend single ones."""
 DEGREES = 45.0
 """How far a joint turns in the pose that shows a finding."""
 MAX_LINES = 40

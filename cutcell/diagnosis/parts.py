@@ -25,7 +25,7 @@ FAR = 1.5
 DEPTHS = np.array([0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.65, 0.9, 1.2])
 """Cells below the skin at which it is looked for the inside."""
 THIN, FEW = 0.005, 0.02
-"""Of the surface, and of its vertices: less than both of these may be thin."""
+"""Parts of the surface and of its vertices: less than both may be thin."""
 SAMPLES = 600
 """Vertices at which thickness is measured."""
 ENOUGH = 1.2
@@ -33,9 +33,9 @@ ENOUGH = 1.2
 RIGID = 0.99
 """A part whose vertices all give more than this to one joint follows it rigidly."""
 MIN_AWAY = 0.05
-"""Of the longest side: how far every vertex of the part is from the bones of that joint."""
+"""Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
-"""Of the longest side: how much farther, in the median, that joint is than the nearest one."""
+"""Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
 MAX_LINES = 40
 """Maximum number of listed parts or joints."""
 

@@ -22,11 +22,11 @@ STRETCH = 4.0
 """An edge that becomes this much longer, by a chord of 45 degrees at most, joins vertices of which
 one follows and the other stays far from the joint: no smooth bend does that."""
 MIN_STRETCH = 0.03
-"""Of the longest side: an edge that becomes longer by less does not show."""
+"""Minimum lengthening of an edge that shows, as part of the longest side."""
 FLIPPED = 0.01
-"""Of the surface: where as much is turned over in one pose, it is more than a crease."""
+"""Part of the surface: if as much is turned over in one pose, it is more than a crease."""
 LOST = 0.1
-"""Of the volume of closed components, in one pose."""
+"""Part of the volume of closed components that is lost in one pose."""
 WARNING_FACTOR = 3.0
 """Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
 way that no animation asks of it."""

@@ -22,16 +22,16 @@ INFLUENCES = 4
 NOTICED = 0.05
 """A weight below it does not show."""
 LEAP = 0.2
-"""Of the longest side: weight that is held over this much more way through the body than straight
+"""Part of the longest side: weight over paths this much longer through the body than straight
 through the air, and than from the nearest joint, has leaked across a gap."""
 FAR = 0.4
 """As far beyond the nearest joint it is out of place, whatever lies between."""
 OUTSIDE = 0.05
-"""Of the longest side: joints farther from the body have no distances through it."""
+"""Part of the longest side: joints farther from the body have no distances through it."""
 DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
 SEAMS = 0.05
-"""Of all places on the surface: where more of them tear, it is no accident of a few layers."""
+"""Part of all places on the surface: if more tear, it is no accident of a few layers."""
 CLEANED = "remove weight that is implausible through the body from these vertices"
 """How weight that is too far from its joint is repaired."""
 MAX_LINES = 40

@@ -35,7 +35,7 @@ FEATURES = (
     "component's area", "component's vote", "component's joints", "distance / radius",
     "joint's area", "spread of parent", "spread of children", "word", "nearest's word",
 )  # fmt: skip
-"""Of each pair, in their order."""
+"""Names of the features of a pair, in order."""
 
 
 class Pairs(NamedTuple):
@@ -111,7 +111,7 @@ def word_code(name: str) -> int:
 def _nearest(distance, vertex, depth, joints):
     """Write the nearest joints of a vertex, ascending; return how many there are.
 
-    Of joints at one distance, as where their bones meet, the one nearer to the root comes first.
+    Among joints at one distance, as where bones meet, the one nearer to the root comes first.
     """
     count = 0
     for j in range(len(distance)):

@@ -30,7 +30,7 @@ def learned_shares(
 
 
 def correct_shares(context: Context, forest: Forest | None = None) -> NDArray[np.float64]:
-    """Let a model, by default the stored one, correct shares, if the skeleton is known."""
+    """Correct shares by a model, by default the stored one, if the skeleton is known."""
     weights, skeleton = context.weights, context.distances.skeleton
     if skeleton is None:
         return weights

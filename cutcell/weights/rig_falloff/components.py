@@ -15,7 +15,7 @@ POINTS = 9
 CELLS = 64
 """Along each side of the grid that sorts the samples, so that a face visits those under it only."""
 SMALL = 0.25
-"""Of the longest side: a component up to this large may be a rigid accessory, or of one joint."""
+"""Maximum size of rigid accessories and components of one joint, as part of the longest side."""
 INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 

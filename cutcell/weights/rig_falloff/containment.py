@@ -15,10 +15,10 @@ PENALTY = 2.0
 """Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
 outside of while it is inside another one."""
 PART_OF_BODY = 0.1
-"""Of the largest component's area: a component of one joint, such as an eyeball, is at most this
-large. The head of a machine of many parts is larger."""
+"""Maximum area of a component of one joint, such as an eyeball, as part of the largest component's.
+The head of a machine of many parts is larger."""
 BODY = 1 / 3
-"""Of the surface: where the largest component is smaller, the mesh is a machine of many parts."""
+"""Part of the surface: if the largest component is smaller, the mesh is a machine of many parts."""
 BARRED = 1e6
 """Factor of a bone's distance on components that its joint does not follow at all."""
 RIGID = 0.9, 0.92
@@ -31,7 +31,7 @@ def joint_containment(
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Measure which part of each joint's bones lies inside each component, and which it owns.
 
-    Of several bones of a joint, the one that is inside a component most counts there.
+    If a joint has several bones, the one that is most inside a component counts there.
 
     Returns shapes (components, j).
     """
@@ -112,7 +112,7 @@ def cross_component_penalty(
 def make_rigid(
     surface: SurfaceOperators, weights: NDArray[np.float64], independent: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    """Let each component follow a joint that nearly all of its area follows: plates, wheels.
+    """Make components rigid to the joint that nearly all of their area follows: plates, wheels.
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """

@@ -20,7 +20,7 @@ SHARPNESS = 2.5
 MIN_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
 MIN_SCREENING = 1e-12
-"""Of the matrix's diagonal: less would be lost to rounding, and leave the matrix singular."""
+"""Minimum part of the matrix's diagonal: less would be rounded away and leave it singular."""
 MANY = 50_000
 """Unknowns up to which the equation is solved by factors of its matrix. The time for factors grows
 faster than the mesh."""
@@ -74,7 +74,7 @@ class Diffusion:
     levels : tuple of Level
         The finest first; empty for up to `MANY` welded vertices.
     factors : SuperLU
-        Of the coarsest matrix.
+        Factors of the coarsest matrix.
 
     References
     ----------
@@ -127,7 +127,7 @@ class Diffusion:
         return spread
 
     def normalise(self, spread: NDArray[np.float64], weights: NDArray[np.float64]) -> None:
-        """Let the rows of an equilibrium of weights sum to one, in place."""
+        """Scale the rows of an equilibrium of weights to sum to one, in place."""
 
         def normalise(part: slice) -> None:
             total = spread[part].sum(axis=1, keepdims=True)

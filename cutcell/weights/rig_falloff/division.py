@@ -29,7 +29,7 @@ about that bone. The edges of a square bar are 1.41 times as far as the middle o
 MIN_RADIUS = 0.5
 """Lattice cells: no bone has a smaller radius than this."""
 CONNECTED = 0.02
-"""Of the longest side: a bone that ends as near as this to where another joint's bone begins leads
+"""Part of the longest side: a bone that ends this near to the start of another joint's bone leads
 on to it."""
 MANY = 200_000
 """Vertices whose distances are sorted to measure radii; of more, these are a sample."""
@@ -47,7 +47,7 @@ class Division:
     ----------
     distances : BoneDistances
     surface : SurfaceOperators
-        Of their graph.
+        The surface of their graph.
     containment, penalty : arrays, shape (components, j)
         See `joint_containment`, and `cross_component_penalty`, which adjustments change.
     radius : array, shape (j,)

@@ -14,7 +14,7 @@ from .division import Division
 from .rigid_accessories import attach_accessories
 
 TAIL = 0.05
-"""Of a vertex's largest weight: subtracted from all its weights, so that they end somewhere."""
+"""Part of a vertex's largest weight that is subtracted from all its weights, so that they end."""
 
 
 def share(context: Context) -> NDArray[np.float64]:
@@ -37,7 +37,7 @@ def spread(context: Context) -> NDArray[np.float64]:
 
 
 def with_rigid_parts(context: Context) -> NDArray[np.float64]:
-    """Let plates, wheels, eyes, buttons... move rigidly."""
+    """Make plates, wheels, eyes and buttons rigid."""
     containment, surface = context.division.containment, context.operators()
     weights, independent = context.weights, np.zeros(len(containment), np.bool_)
     if context.adjustments is not None:

@@ -28,7 +28,7 @@ def attach_accessories(
     weights: NDArray[np.float64],
     independent: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Let small components without bones follow what they sit on: eyes, buttons, horns, armour.
+    """Make small components without bones rigid: eyes, buttons, horns, armour.
 
     Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
 
@@ -54,7 +54,7 @@ def attach(
     is_accessory: NDArray[np.bool_],
     weights: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Let some components, shape (components,), follow the others where they touch them.
+    """Make some components, shape (components,), rigid to the others where they touch them.
 
     `weights` and what is returned have the shape (k, j).
     """
