@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import cutcell
 from cutcell import Rig, TriangleMesh
-from cutcell.diagnosis.widest import connected_weights
+from cutcell.diagnosis.cleaning import connected_weights
 from cutcell.errors import SkeletonError, WeightsError
 from cutcell.metrics import vertex_shares, weight_l1
 from cutcell_assets import demo_path
