@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.triangles import face_edges
+from ..geometry.triangles import face_edges, unit_normals
 from ..geometry.weld import WELD_TOLERANCE, weld
 from .finding import Finding, count, share
 from .intersections import find_intersections
