@@ -17,13 +17,13 @@ import numpy as np
 
 import cutcell
 from cutcell.geodesics.fallback import UNREACHED
-from cutcell.metrics import TURNED, deformation_error
 from cutcell_lab.baselines import METHODS
 from cutcell_lab.benchmarks import gvb, optimisation, runtime
 from cutcell_lab.benchmarks.document import fill
 from cutcell_lab.benchmarks.rigs import ROOT, SHARED
 from cutcell_lab.benchmarks.tables import Table
 from cutcell_lab.benchmarks.wild import files_of
+from cutcell_lab.metrics import TURNED, deformation_error
 
 from . import graph_construction
 

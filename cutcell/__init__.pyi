@@ -5,7 +5,6 @@ from . import geodesics as geodesics
 from . import graph as graph
 from . import io as io
 from . import method as method
-from . import metrics as metrics
 from . import pose as pose
 from . import rig as rig
 from . import templates as templates

@@ -3,8 +3,8 @@
 import pytest
 
 import cutcell
-from cutcell.metrics import deformation_error, weight_l1
 from cutcell_assets import DEMOS
+from cutcell_lab.metrics import deformation_error, weight_l1
 
 pytestmark = pytest.mark.slow
 

@@ -14,7 +14,7 @@ MAX_CALLS = 2
 PUBLIC = (
     "cutcell",
     "cutcell.geodesics",
-    "cutcell.metrics",
+    "cutcell_lab.metrics",
     "cutcell.pose",
     "cutcell_lab.baselines.methods",
 )

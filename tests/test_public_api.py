@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 import cutcell
+import cutcell_lab
 from tests.conftest import ROOT
 
 PACKAGES = [
     *(f"cutcell.{name}" for name in ("io", "graph", "geodesics", "weights", "editing", "pose")),
-    "cutcell.metrics",
+    "cutcell_lab.metrics",
     "cutcell_lab.baselines",
 ]
 ROOT_FUNCTIONS = sorted(
@@ -62,7 +63,7 @@ def faults(by_name: dict) -> dict:
 
 def test_dir_lists_the_public_names_and_others_are_unknown():
     assert dir(cutcell) == cutcell.__all__
-    assert cutcell.metrics.weight_l1([[1.0]], [[1.0]]) == 0
+    assert cutcell_lab.metrics.weight_l1([[1.0]], [[1.0]]) == 0
     with pytest.raises(AttributeError, match="blind"):
         cutcell.blind  # noqa: B018
 

@@ -27,7 +27,7 @@ def whole_way(path: Path) -> NDArray[np.float64]:
     assert_type(binding, cutcell.Binding)
     cutcell.save(path, rig.with_weights(binding.weights))
     assert_type(cutcell.show(rig, binding), cutcell.Page)
-    error = cutcell.metrics.weight_l1(binding.weights, binding.weights)
+    error = cutcell_lab.metrics.weight_l1(binding.weights, binding.weights)
     assert_type(error, float)
     return binding.weights
 

@@ -7,10 +7,10 @@ from PIL import Image
 
 import cutcell
 from benchmarks import network_data
-from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell_assets.generate import generate
 from cutcell_lab.benchmarks.network_scores import dropped, groups, means, scores
 from cutcell_lab.benchmarks.networks import Run, main
+from cutcell_lab.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell_lab.networks import sample_rig
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"

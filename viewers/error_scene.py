@@ -5,9 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.metrics import DeformationError, deformation_error
-from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.runtime.progress import Progress, silent
+from cutcell.rig import Rig
 
 from .character import attachments, body, bones, pose_in_scene, to_scene
 from .description import Apart, Description, Legend
@@ -117,17 +115,6 @@ def millimetres(rig: Rig) -> float:
     """Return the mm of a length of 1 in the scene, where the longest side is 1 m."""
     used = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
     return 1000 / float(np.ptp(used, axis=0).max())
-
-
-def scene_error(
-    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
-) -> DeformationError:
-    """Return the deformation error with turns about the scene's axes, as the page turns joints."""
-    mesh = TriangleMesh(to_scene(rig, rig.mesh.vertices), rig.mesh.faces)
-    skeleton = rig.skeleton
-    joints = to_scene(rig, skeleton.joints)
-    parts = (mesh, Skeleton(joints, skeleton.parents, skeleton.names, skeleton.deform))
-    return deformation_error(parts, weights, reference, progress=progress)
 
 
 def _with_rest(weights: NDArray[np.float32]) -> NDArray[np.float32]:

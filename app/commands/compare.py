@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 
 from cutcell.errors import CutcellError
 from cutcell.isolated.run import stoppable
-from cutcell.metrics import (
+from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
+from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.metrics import (
     DeformationError,
     deformation_error,
     unweighted,
     vertex_shares,
     weight_l1,
 )
-from cutcell.rig import Rig
-from cutcell.runtime.progress import Progress
-from cutcell_lab.baselines import METHODS
-from cutcell_lab.baselines.methods import known_options
 
 from ..jobs.jobs import COMPARING, WAITING
 from ..jobs.messages import error_text, visible_text

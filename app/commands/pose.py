@@ -3,11 +3,14 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cutcell.errors import CutcellError
-from cutcell.rig import Clip, Rig
+from cutcell.rig import Clip, Rig, Skeleton, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
-from cutcell_viewers.error_scene import WHOLE, Gap, scene_error
+from cutcell_lab.metrics import DeformationError, deformation_error
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.error_scene import WHOLE, Gap
 from cutcell_viewers.pose_scene import pose_at, turn
 
 from ..scenes.pose import (
@@ -190,3 +193,14 @@ def motion_error(
         greatest = max(greatest, float(lengths.max()))
         most = max(most, float(np.quantile(lengths, WHOLE)))
     return float(np.sqrt(squares)), greatest, most
+
+
+def scene_error(
+    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
+) -> DeformationError:
+    """Return the deformation error with turns about the scene's axes, as the page turns joints."""
+    mesh = TriangleMesh(to_scene(rig, rig.mesh.vertices), rig.mesh.faces)
+    skeleton = rig.skeleton
+    joints = to_scene(rig, skeleton.joints)
+    parts = (mesh, Skeleton(joints, skeleton.parents, skeleton.names, skeleton.deform))
+    return deformation_error(parts, weights, reference, progress=progress)

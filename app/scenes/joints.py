@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.editing.corrections import JointCorrection
-from cutcell.metrics import vertex_shares
 from cutcell.rig.deform_joints import DeformJoints
+from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex

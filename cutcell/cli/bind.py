@@ -101,9 +101,9 @@ def bind(
     from ..editing.corrections import Corrections
     from ..io import check_output, load, save, saving_notes
     from ..io.files import naming
-    from ..metrics import summary
     from ..rig.deform_joints import choose_deform
     from ..templates.fit import check_template
+    from . import summary
 
     how = chosen_method(options)
     touches: dict[str, Any] = {

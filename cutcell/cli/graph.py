@@ -49,9 +49,9 @@ def graph(
     from ..binding import binding_steps
     from ..io import load
     from ..io.files import naming
-    from ..metrics import summary
     from ..rig.deform_joints import choose_deform
     from ..weights.context import Context, run
+    from . import summary
 
     how = chosen_method(options)
     loaded = load(rig, skeleton=skeleton)

@@ -13,9 +13,9 @@ from ..editing import bind
 from ..errors import WeightsError
 from ..geodesics import BoneDistances
 from ..method import ANIMATION, check_resolution
-from ..metrics import vertex_shares
 from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
+from ..rig.mesh import vertex_shares
 from ..runtime.compiled import compiled
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import in_threads

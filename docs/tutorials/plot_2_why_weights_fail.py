@@ -7,6 +7,7 @@ every bone, or faces are inside out. Each can be seen and measured.
 """
 
 import cutcell
+import cutcell_lab
 import cutcell_viewers
 from cutcell.graph import INTERIOR
 from cutcell_app.render import Choices, describe
@@ -43,5 +44,5 @@ flipped = cutcell.load(demo_path("biped_flipped_arm"))
 for orient in (True, False):
     binding = cutcell.bind(flipped, orient=orient)
     interior = (binding.graph.node_kind == INTERIOR).sum()
-    difference = cutcell.metrics.weight_l1(flipped.weights, binding.weights)
+    difference = cutcell_lab.metrics.weight_l1(flipped.weights, binding.weights)
     print(f"orient={orient}: {interior} interior nodes, L1 to the file {difference:.2f}")

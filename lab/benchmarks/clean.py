@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.diagnosis import cleaning
-from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.rig import Rig
 from cutcell_lab.baselines import METHODS
-from cutcell_lab.metrics import find_gaps
 
+from ..metrics import deformation_error, find_gaps, vertex_shares, weight_l1
 from .document import fill
 from .rigs import SHARED
 from .tables import Table

@@ -20,8 +20,8 @@ import cutcell
 from cutcell.graph import build_graph
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from cutcell_lab.baselines.methods import known_options
-from cutcell_lab.metrics import crosstalk, find_gaps
 
+from ..metrics import crosstalk, find_gaps
 from .document import fill
 from .rigs import ROOT
 from .tables import Table

@@ -7,10 +7,11 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.metrics import deformation_error, precision_recall, weight_l1
-from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Skeleton, TriangleMesh
 from cutcell_lab.networks import Sample
+
+from ..metrics import deformation_error, precision_recall, weight_l1
+from ..metrics.deformation import longest_side
 
 SAME_MAKER = ("quaternius_", "quat_", "deok_dino_quant", "packt_woman", "m2m_eagle")
 """Characters of rigs and wild by the maker of train, surely or probably (SOURCES.md)."""

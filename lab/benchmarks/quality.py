@@ -24,13 +24,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import cutcell
-from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Rig
 from cutcell.runtime.writing import write_all
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from cutcell_lab.baselines.compare import Comparison, compare, comparison_markdown
 from cutcell_lab.baselines.compare.plot import plot_comparison
 
+from ..metrics.deformation import longest_side
 from .document import fill
 from .rigs import ROOT, SHARED
 from .shapes import small

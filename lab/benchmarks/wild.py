@@ -19,9 +19,9 @@ import numpy as np
 
 import cutcell
 from cutcell.errors import CutcellError
-from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.rig import Rig
 
+from ..metrics import deformation_error, vertex_shares, weight_l1
 from .document import fill
 from .rigs import SHARED
 from .tables import Table

@@ -14,8 +14,9 @@ from cutcell.cli.options import Json, Quiet, Resolution
 from .networks import Networks, offer_networks
 
 if TYPE_CHECKING:
-    from cutcell.metrics import Turned
     from cutcell.rig import Rig
+
+    from ..metrics import Turned
 
 EPILOG = """Examples:
 
@@ -68,13 +69,13 @@ def compare(
     table shows the reason.
     """
     from cutcell.io import load
-    from cutcell.metrics import TURNED
     from cutcell.rig.checks import check_choice
 
     from ..baselines.compare import compare as measure
     from ..baselines.compare import comparison_markdown
     from ..baselines.compare.plot import check_plot, plot_comparison
     from ..baselines.compare.terminal import print_comparison
+    from ..metrics import TURNED
 
     if plot is not None:
         check_plot(plot)

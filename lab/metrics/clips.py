@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cutcell.metrics.deformation import CM2, check_fit, longest_side
-from cutcell.metrics.weight_error import checked_pair, vertex_shares
 from cutcell.pose import linear_blend_skinning
 from cutcell.rig import Rig
+from cutcell.rig.mesh import vertex_shares
+
+from .deformation import CM2, check_fit, longest_side
+from .weight_error import checked_pair
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""

@@ -11,8 +11,9 @@ from scipy.spatial import cKDTree
 
 from cutcell.errors import ParameterError
 from cutcell.graph import CutCellGraph
-from cutcell.metrics.weight_error import checked_weights
 from cutcell.rig.checks import check_integer, check_number
+
+from .weight_error import checked_weights
 
 NEAR = 0.05
 """Of the longest side: vertices within it face each other across a gap."""

@@ -13,10 +13,10 @@ from scipy.sparse.csgraph import dijkstra, shortest_path
 from cutcell.errors import WeightsError
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.weld import WELD_TOLERANCE, weld
-from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Rig, Skeleton
 
 from ..dataset.audit.points import mesh_normals
+from ..metrics.deformation import longest_side
 
 RING, NEAR = 6, 16
 """Neighbours of a point: those for the one-ring, and those for the geodesic ball."""

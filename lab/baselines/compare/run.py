@@ -11,20 +11,22 @@ from numpy.typing import NDArray
 
 from cutcell.errors import Cancelled, CutcellError, ParameterError, WeightsError, comes_from_ctrl_c
 from cutcell.graph import build_graph
-from cutcell.metrics import (
+from cutcell.rig import Rig
+from cutcell.rig.checks import check_choice
+from cutcell.runtime.progress import Progress, silent
+
+from ...metrics import (
     TURNED,
     Turned,
+    clip_error,
+    crosstalk,
     deformation_error,
+    find_gaps,
     precision_recall,
     unweighted,
     vertex_shares,
     weight_l1,
 )
-from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
-from cutcell.runtime.progress import Progress, silent
-
-from ...metrics import clip_error, crosstalk, find_gaps
 from .. import METHODS, Baseline, BaselineBinding
 from ..methods import known_options
 from .scores import Comparison, MethodScore, RigScore

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.metrics import Turn
+from ...metrics import Turn
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class MethodScore:
     failed : str
         Why there are no weights; empty where there are.
     l1, precision, recall
-        Of the weights; see `cutcell.metrics`.
+        Of the weights; see `cutcell_lab.metrics`.
     deformation : float
         cm², joints turned by 30°.
     clips : float

@@ -19,10 +19,10 @@ from cutcell.geodesics import bone_distances
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.graph.memory import needed_memory
 from cutcell.graph.rays import expected_hits
-from cutcell.metrics import deformation_error, precision_recall, weight_l1
 from cutcell.rig import Rig, Skeleton
 from cutcell.rig.checks import one_line
 
+from ...metrics import deformation_error, precision_recall, weight_l1
 from ..read.sources import Content, read_content
 from ..read.store import Entry, Outcome, Parameters, entry_bytes
 

@@ -45,7 +45,7 @@ def weight_loss(weights: Tensor, batch: Batch) -> Tensor:
 
     Cross-entropy; L1; L1 on the artist's zeros alone, per joint that is one, and likewise on the
     others; and the deformation: how far the points are apart, squared, when each joint turns, in
-    the closed form of `cutcell.metrics.deformation_error`, summed over the joints.
+    the closed form of `cutcell_lab.metrics.deformation_error`, summed over the joints.
     """
     assert batch.target is not None
     predicted, target = batch.flat(weights), batch.flat(batch.target)

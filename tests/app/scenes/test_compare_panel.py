@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.metrics import deformation_error, weight_l1
+import cutcell_lab
 from cutcell.runtime.progress import silent
 from cutcell_app.commands.compare import Compared, choose, measured, next_method
 from cutcell_app.panels.compare import _field, about, rows_of
@@ -15,6 +15,7 @@ from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_o
 from cutcell_app.state import State
 from cutcell_app.state.compare import NOW, offered
 from cutcell_lab.baselines import METHODS, BaselineBinding
+from cutcell_lab.metrics import deformation_error, weight_l1
 from tests.viewers.arm import arm_rig
 
 
@@ -120,7 +121,7 @@ def test_results_of_another_character_are_never_shown(state):
 
 def test_the_measures_are_those_of_the_core(rig, euclidean):
     assert euclidean.deformation == deformation_error(rig, euclidean.weights, rig.weights).mean
-    share = cutcell.metrics.vertex_shares(rig.mesh)
+    share = cutcell_lab.metrics.vertex_shares(rig.mesh)
     assert euclidean.l1 == weight_l1(euclidean.weights, rig.weights, share)
     assert euclidean.seconds > 0
     assert euclidean.unweighted == 0

@@ -6,10 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cutcell
+from cutcell_app.commands.pose import scene_error
 from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.pose import VIEWS, angles_of, error_of, gizmo_part, rotation_of
 from cutcell_app.state import State
+from cutcell_lab.metrics import deformation_error
+from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.error_scene import Gap
+from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.viewers.arm import arm_rig
 
 angle = st.floats(-180, 180)
@@ -119,3 +123,19 @@ def test_the_rings_are_there_while_a_joint_can_be_turned(state):
     assert gizmo_part(state) is None
     state.param.update(moving=False, panel="graph")
     assert gizmo_part(state) is None
+
+
+def test_worst_turns_are_about_the_axes_that_the_page_turns_about(rig):
+    other = np.random.default_rng(3).random(rig.weights.shape)
+    other /= other.sum(axis=1, keepdims=True)
+    other[:5] = 0  # these stand still
+    errors = scene_error(rig, rig.weights, other)
+    worst = errors.worst(1)[0]
+    rotations = joint_turns(rig, {worst.joint: turn(worst.axis, 30)})
+    pose = pose_in_scene(rig, cutcell.forward_kinematics(rig.skeleton, rotations))
+    lengths = Gap(rig, rig.weights, other).lengths(pose)
+    assert worst.largest == pytest.approx((lengths.max() / 10) ** 2, rel=1e-3)
+    # The arm's space has z up and the scene y: the same turns, called by other names.
+    plain = deformation_error(rig, rig.weights, other)
+    np.testing.assert_allclose(errors.turn_mean[:, 1], plain.turn_mean[:, 2], rtol=1e-9)
+    assert errors.mean == pytest.approx(plain.mean)

@@ -12,8 +12,8 @@ import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.diagnosis.cleaning import connected_weights
 from cutcell.errors import SkeletonError, WeightsError
-from cutcell.metrics import vertex_shares, weight_l1
 from cutcell_assets import demo_path
+from cutcell_lab.metrics import vertex_shares, weight_l1
 from tests.cutcell.diagnosis.worm import worm
 
 WORM = worm()

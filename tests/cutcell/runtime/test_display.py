@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from cutcell.cli.console import print_json, print_line, print_table, print_warnings, progress_bars
-from cutcell.metrics import Turn
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.display import (
     MAX_LETTERS,
@@ -25,6 +24,7 @@ from cutcell_app.jobs.messages import without_folders
 from cutcell_lab.baselines.compare.markdown import comparison_markdown
 from cutcell_lab.baselines.compare.scores import Comparison, MethodScore, RigScore
 from cutcell_lab.baselines.compare.terminal import comparison_table
+from cutcell_lab.metrics import Turn
 from cutcell_viewers.short_names import short_names
 
 NASTY = {

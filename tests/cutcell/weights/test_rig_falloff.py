@@ -6,12 +6,12 @@ import pytest
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh, bind
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
-from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.weights.rig_falloff import division
 from cutcell.weights.rig_falloff.diffusion import SHARPNESS, Diffusion
 from cutcell.weights.rig_falloff.division import FACING_LEAST, _facing
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from cutcell_lab.baselines.compare import compare
+from cutcell_lab.metrics import deformation_error, vertex_shares, weight_l1
 from tests import meshes
 from tests.bars import grid_box
 

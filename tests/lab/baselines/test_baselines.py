@@ -13,13 +13,13 @@ from scipy.spatial import cKDTree
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
-from cutcell.metrics import vertex_shares, weight_l1
 from cutcell_lab.baselines import METHODS
 from cutcell_lab.baselines.body import Body
 from cutcell_lab.baselines.methods import known_options
 from cutcell_lab.baselines.visibility import Blockers
 from cutcell_lab.baselines.volumes.voxel_binding import path_lengths
 from cutcell_lab.baselines.volumes.voxels import PAD, mark_triangles, voxelize
+from cutcell_lab.metrics import vertex_shares, weight_l1
 from tests import meshes
 from tests.bars import bar, check_weights, grid_box
 from tests.conftest import SHARED_RIGS

@@ -77,7 +77,7 @@ def test_every_asset_is_there_or_says_why_not(made):
     np.testing.assert_array_equal(entry.distances, binding.distances.joint.T.astype(np.float32))
     np.testing.assert_array_equal(entry.artist, rig.weights.astype(np.float32))
     assert rows["rig2"]["nodes"] == len(binding.graph.nodes)
-    assert rows["rig2"]["l1"] == cutcell.metrics.weight_l1(binding.weights, rig.weights)
+    assert rows["rig2"]["l1"] == cutcell_lab.metrics.weight_l1(binding.weights, rig.weights)
 
 
 def test_single_bones_are_at_least_as_far_as_their_joint(made):

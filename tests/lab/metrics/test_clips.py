@@ -7,7 +7,7 @@ import pytest
 
 from cutcell.pose import linear_blend_skinning, swing
 from cutcell_lab.metrics import clip_error, clips
-from tests.cutcell.metrics.test_metrics import chain, random_weights
+from tests.lab.metrics.test_metrics import chain, random_weights
 
 
 def test_clips_are_compared_frame_by_frame(monkeypatch):

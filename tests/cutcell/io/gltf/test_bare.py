@@ -9,9 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
 from cutcell.geodesics import bone_distances, bone_segments
-from cutcell.metrics import deformation_error
 from cutcell_lab.baselines.compare import compare
-from cutcell_lab.metrics import clip_error
+from cutcell_lab.metrics import clip_error, deformation_error
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, Builder, column
 from tests.gltf_validator.validator import errors, reports
 

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
 from cutcell.errors import Cancelled
-from cutcell.metrics import (
+from cutcell.pose import linear_blend_skinning, rotate_joint
+from cutcell_lab.metrics import (
     deformation_error,
     precision_recall,
     unweighted,
     vertex_shares,
     weight_l1,
 )
-from cutcell.pose import linear_blend_skinning, rotate_joint
 from tests import meshes
 
 NAN = float("nan")
@@ -118,7 +118,7 @@ def test_blocks_change_nothing(monkeypatch):
     rig = chain()
     ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
     whole = deformation_error(rig, ours, theirs)
-    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK_NUMBERS", 20)
+    monkeypatch.setattr("cutcell_lab.metrics.deformation.BLOCK_NUMBERS", 20)
     parts = deformation_error(rig, ours, theirs)
     np.testing.assert_array_equal(whole.vertex, parts.vertex)
     np.testing.assert_allclose(whole.turn_mean, parts.turn_mean)
@@ -127,7 +127,7 @@ def test_blocks_change_nothing(monkeypatch):
 def test_measuring_can_be_stopped_between_blocks(monkeypatch):
     rig, told = chain(), []
     ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
-    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK_NUMBERS", 20)
+    monkeypatch.setattr("cutcell_lab.metrics.deformation.BLOCK_NUMBERS", 20)
 
     def stop(stage, fraction):
         told.append((stage, fraction))

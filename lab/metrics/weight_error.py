@@ -5,51 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import ParameterError, WeightsError
-from ..geometry.weld import WELD_TOLERANCE, weld
-from ..rig import TriangleMesh
-from ..rig.checks import check_choice
+from cutcell.errors import ParameterError, WeightsError
 
-COUNTS = ("welded", "vertices")
 THRESHOLD = 0.001
 """A joint moves a vertex if its weight is greater."""
 SUM_TOLERANCE = 1e-3
 """Weights stored in 8 bits sum to one within this."""
-
-
-def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float64]:
-    """Return each vertex's share of a mean over the mesh.
-
-    Exporters split a vertex at every texture seam. Counted as they are in the file, seams
-    would weigh two and three times as much as the skin between them.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    count : {"welded", "vertices"}
-        "welded": every welded vertex counts once, the file's vertices share it evenly.
-        "vertices": every vertex of the file counts the same. Vertices that no face uses count
-        nothing.
-
-    Returns
-    -------
-    array, shape (n,), float64
-        Sums to one.
-
-    Raises
-    ------
-    ParameterError
-        An unknown `count`.
-    """
-    check_choice("count", count, COUNTS)
-    share = np.zeros(len(mesh.vertices))
-    used = np.unique(mesh.faces)
-    share[used] = 1.0
-    if count == "welded":
-        low, high = mesh.bounds
-        welded = weld(mesh.vertices[used], WELD_TOLERANCE * float((high - low).max()))[1]
-        share[used] = 1.0 / np.bincount(welded)[welded]
-    return share / share.sum()
 
 
 def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | None = None) -> float:

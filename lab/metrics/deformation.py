@@ -8,11 +8,13 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import ParameterError, WeightsError
-from ..rig import Rig, Skeleton, TriangleMesh
-from ..rig.checks import check_choice, check_number
-from ..runtime.progress import Progress, silent
-from .weight_error import checked_pair, vertex_shares
+from cutcell.errors import ParameterError, WeightsError
+from cutcell.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig.checks import check_choice, check_number
+from cutcell.rig.mesh import vertex_shares
+from cutcell.runtime.progress import Progress, silent
+
+from .weight_error import checked_pair
 
 AXES = ("x", "y", "z")
 Turned = Literal["deform", "all"]
