@@ -1,6 +1,6 @@
 """Show where weights differ between two versions of the code, and whether they got better.
 
-    python -m cutcell_lab.benchmarks.weight_changes record FOLDER [SET...] [--resolution 64]
+    python -m cutcell_lab.benchmarks.weight_changes record FOLDER [SET...] [--method M]
     python -m cutcell_lab.benchmarks.weight_changes compare OLD NEW [--out docs/quality.md]
 
 `record` binds all characters of the sets (demos, rigs, wild, more) with the joints of their makers
@@ -41,6 +41,8 @@ class Change:
     mode: str
     vertices: float
     """Part of the vertices with a weight that changed."""
+    largest: float
+    """Largest change of a weight."""
     l1: tuple[float, float]
     deformation: tuple[float, float]
     """Deformation error, cm²."""
@@ -56,13 +58,13 @@ def rigs_of(group: str) -> Iterator[tuple[str, Rig]]:
         yield path.stem, cutcell.load(path)
 
 
-def record(folder: Path, groups: Sequence[str], resolution: int) -> None:
+def record(folder: Path, groups: Sequence[str], resolution: int, method: str) -> None:
     """Bind all characters of some sets and write weights, scores, joints and warnings."""
     for group in groups:
         for name, rig in rigs_of(group):
             for mode in MODES:
                 bound = rig if mode == "known" else cutcell.choose_deform(rig, fresh=True)
-                binding = cutcell.bind(bound, resolution)
+                binding = cutcell.bind(bound, resolution, method=method)
                 scores = np.full(2, np.nan)
                 if rig.weights is not None and rig.weights.any():
                     score = score_of(rig, binding.weights)
@@ -71,7 +73,7 @@ def record(folder: Path, groups: Sequence[str], resolution: int) -> None:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 np.savez_compressed(
                     path,
-                    weights=binding.weights.astype(np.float32),
+                    weights=binding.weights,
                     scores=scores,
                     joints=rig.skeleton.joints,
                     deform=bound.skeleton.deform,
@@ -86,11 +88,12 @@ def changes(old: Path, new: Path) -> Iterator[Change]:
         name, mode = path.name.removesuffix(".npz").rsplit(".", 1)
         with np.load(old / path.name) as before, np.load(path) as after:
             if before["weights"].shape != after["weights"].shape:
-                part = 1.0
+                part = largest = 1.0
             else:
                 part = changed_part(before["weights"], after["weights"])
+                largest = float(np.abs(after["weights"] - before["weights"]).max())
             l1, deformation = zip(before["scores"], after["scores"], strict=True)
-            yield Change(name, mode, part, l1, deformation, cause_of(before, after))
+            yield Change(name, mode, part, largest, l1, deformation, cause_of(before, after))
 
 
 def changed_part(before: NDArray, after: NDArray) -> float:
@@ -129,8 +132,15 @@ def change_table(group: str, listed: Sequence[Change]) -> Table:
 
 def summary(groups: dict[str, list[Change]]) -> Table:
     """Put medians and means of all sets together."""
-    columns = ["set", "joints", "characters", "changed", "L1 median", "L1 mean", "cm² median"]
-    columns += ["cm² mean", "cm² geometric mean", "over 20 cm²", "better : worse"]
+    columns = ["set", "joints", "characters", "changed", "largest change", "L1 median"]
+    columns += [
+        "L1 mean",
+        "cm² median",
+        "cm² mean",
+        "cm² geometric mean",
+        "over 20 cm²",
+        "better : worse",
+    ]
     table = Table("All sets", columns)
     rows = [(group, [one]) for group, one in groups.items() if group != "demos"]
     rows.append(("all", [one for group, one in groups.items() if group != "demos"]))
@@ -145,6 +155,7 @@ def summary(groups: dict[str, list[Change]]) -> Table:
                 mode,
                 len(chosen),
                 sum(one.vertices > 0 for one in chosen),
+                f"{max(one.largest for one in chosen):.1g}",
                 *("{:.3f} → {:.3f}".format(*f(l1, axis=0)) for f in (np.median, np.mean)),
                 *("{:.2f} → {:.2f}".format(*f(error, axis=0)) for f in (np.median, np.mean)),
                 "{:.2f} → {:.2f}".format(*np.exp(np.log(error).mean(axis=0))),
@@ -162,13 +173,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     recording.add_argument("folder", type=Path)
     recording.add_argument("sets", nargs="*", metavar="SET", help=f"of {', '.join(SETS)}")
     recording.add_argument("--resolution", type=int, default=64)
+    recording.add_argument("--method", choices=("animation", "paper"), default="animation")
     comparing = commands.add_parser("compare")
     comparing.add_argument("old", type=Path)
     comparing.add_argument("new", type=Path)
     comparing.add_argument("--out", type=Path, help="a document whose tables to replace")
     options = parser.parse_args(arguments)
     if options.command == "record":
-        record(options.folder, options.sets or SETS, options.resolution)
+        record(options.folder, options.sets or SETS, options.resolution, options.method)
         return
     groups = {
         group: list(changes(options.old / group, options.new / group))
