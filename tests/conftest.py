@@ -1,6 +1,8 @@
 """What all tests share: characters to load, a browser, and how several processes run them."""
 
 import os
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
@@ -93,6 +95,17 @@ def demo_paths() -> list[Path]:
     paths = sorted((ROOT / "assets").glob("*.glb"))
     assert paths, "assets/ holds no demo characters; make them by: make assets"
     return paths
+
+
+@pytest.fixture(scope="session")
+def scheduler() -> Iterator[str]:
+    """Address of a Dask cluster in this process, and of a runner that stays for the next test."""
+    from cutcell_lab.dataset.bind.cluster import connected
+
+    with warnings.catch_warnings():  # what Dask leaves to the garbage collector is not ours
+        warnings.simplefilter("ignore")
+        with connected(None, 1, processes=False) as cluster:
+            yield cluster._client.scheduler.address
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from cutcell_lab.dataset import audit, save_audit
 from tests.viewers.arm import arm_rig
 
 
-def saved_audit(folder: Path) -> Path:
+def saved_audit(folder: Path, scheduler: str | None = None) -> Path:
     """Audit three characters in FOLDER/rigs; return FOLDER/audit."""
     rigs, out = folder / "rigs", folder / "audit"
     rigs.mkdir()
@@ -21,5 +21,5 @@ def saved_audit(folder: Path) -> Path:
     turned = Rig(arm.mesh, Skeleton(bent, [-1, 0, 1], arm.skeleton.names), arm.weights)
     for name, rig in (("arm", arm), ("same", arm), ("turned", turned)):
         cutcell.save(rigs / f"{name}.npz", Rig(rig.mesh, rig.skeleton, rig.weights))
-    save_audit(audit([rigs], points=256, workers=1), out, [rigs])
+    save_audit(audit([rigs], points=256, workers=1, scheduler=scheduler), out, [rigs])
     return out

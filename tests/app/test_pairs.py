@@ -23,8 +23,8 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def audited(tmp_path_factory):
-    return saved_audit(tmp_path_factory.mktemp("audited"))
+def audited(tmp_path_factory, scheduler):
+    return saved_audit(tmp_path_factory.mktemp("audited"), scheduler)
 
 
 def look(session, folder):

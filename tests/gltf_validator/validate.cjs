@@ -1,10 +1,11 @@
-// Prints Khronos' validation report of each file named, as one JSON object a line.
+// Answers each line of standard input, the name of a file, by Khronos' report on it, a line of JSON.
 const { readFileSync } = require("node:fs");
 const { dirname, join } = require("node:path");
+const { createInterface } = require("node:readline");
 const { validateBytes } = require("gltf-validator");
 
 async function main() {
-  for (const file of process.argv.slice(2)) {
+  for await (const file of createInterface({ input: process.stdin })) {
     const beside = (uri) => new Uint8Array(readFileSync(join(dirname(file), decodeURIComponent(uri))));
     const report = await validateBytes(new Uint8Array(readFileSync(file)), {
       maxIssues: 0,

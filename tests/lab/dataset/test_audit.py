@@ -158,14 +158,14 @@ def planted() -> dict[str, Rig]:
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def found(tmp_path_factory, scheduler):
     folder = tmp_path_factory.mktemp("planted")
     for name, rig in planted().items():
         weights = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
         weights[:, 0] = 1
         cutcell.save(folder / f"{name}.npz", rig.with_weights(weights))
     (folder / "broken.npz").write_bytes(b"broken")
-    return audit([folder], points=2048, workers=1), folder
+    return audit([folder], points=2048, scheduler=scheduler), folder
 
 
 @pytest.mark.slow
@@ -200,9 +200,10 @@ def test_one_of_each_cluster_is_kept(found, tmp_path):
 
 
 @pytest.mark.slow
-def test_two_sets_give_the_pairs_across_them(found):
+def test_two_sets_give_the_pairs_across_them(found, scheduler):
     result, folder = found
-    crossed = audit([folder / "original.npz"], [folder], points=2048, workers=1)
+    one = [folder / "original.npz"]
+    crossed = audit(one, [folder], points=2048, scheduler=scheduler)
     assert crossed.labels is None
     assert crossed.keep == []
     names = {result.names[p.a] for p in result.pairs if result.names[p.b] == "original"}

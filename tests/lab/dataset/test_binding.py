@@ -23,8 +23,8 @@ from cutcell_assets.generate import KINDS, generate
 from cutcell_lab.dataset.bind import binding
 from cutcell_lab.dataset.bind.binding import bind_all, bind_isolated
 from cutcell_lab.dataset.bind.cluster import connected
-from cutcell_lab.dataset.bind.runner import AssetLostError, Runner, stop_runners
-from cutcell_lab.dataset.bind.work import bind_content, rignet_bones
+from cutcell_lab.dataset.bind.runner import AssetLostError, Runner
+from cutcell_lab.dataset.bind.work import bind_content, memory_needed, rignet_bones
 from cutcell_lab.dataset.read.formats import faces_of_edges
 from cutcell_lab.dataset.read.sources import Content, find_sources
 from cutcell_lab.dataset.read.store import Parameters, Store, read_entry
@@ -53,13 +53,13 @@ def files_of(store: Path) -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory, scheduler):
     """Return rigs, one of them broken and one twice, a store of them, and its report."""
     root = tmp_path_factory.mktemp("made")
     folder = rigs_in(root / "rigs")
     (folder / "broken.npz").write_bytes(b"PK broken")
     (folder / "copy.npz").write_bytes((folder / "rig0.npz").read_bytes())
-    report = bind_all([folder], root / "store", QUICK, workers=1)
+    report = bind_all([folder], root / "store", QUICK, scheduler=scheduler)
     return folder, root / "store", report
 
 
@@ -106,19 +106,19 @@ def copied(made, tmp_path):
     return folder, Path(shutil.copytree(store, tmp_path / "copy")), report
 
 
-def test_a_second_run_computes_nothing_and_a_change_one(copied, tmp_path):
+def test_a_second_run_computes_nothing_and_a_change_one(copied, tmp_path, scheduler):
     folder, store, _ = copied
     before = {p: p.stat().st_mtime_ns for p in store.glob("??/*")}
-    again = bind_all([folder], store, QUICK, workers=1)
+    again = bind_all([folder], store, QUICK, scheduler=scheduler)
     assert (again.bound, again.known, again.failed) == (0, 6, 1)
     assert {p: p.stat().st_mtime_ns for p in store.glob("??/*")} == before
     other = rigs_in(tmp_path / "rigs")
     cutcell.save(other / "rig0.npz", generate("hand", 99, detail=16))
-    changed = bind_all([other], store, QUICK, workers=1)
+    changed = bind_all([other], store, QUICK, scheduler=scheduler)
     assert (changed.bound, changed.known) == (1, 3)
 
 
-def test_a_damaged_record_is_made_again(copied):
+def test_a_damaged_record_is_made_again(copied, scheduler):
     folder, store, report = copied
     expected = files_of(store)
     (path,) = {row["path"] for row in report.rows if row["name"] == "rig0"}
@@ -128,7 +128,7 @@ def test_a_damaged_record_is_made_again(copied):
     half = victim.parent / ".cutcell-0123456789abcdef.npz"
     half.write_bytes(b"half")
     os.utime(half, (0, 0))
-    again = bind_all([folder], store, QUICK, workers=1)
+    again = bind_all([folder], store, QUICK, scheduler=scheduler)
     assert again.bound == 1
     assert files_of(store) == expected
     assert not list(store.rglob(".cutcell-*"))
@@ -149,12 +149,16 @@ def test_precision_and_parameters_name_other_files(made):
 
 def test_too_little_memory_is_told_before_it_is_taken(made, monkeypatch):
     folder, _, _ = made
-    content = find_sources([folder / "rig1.npz"])[0].content()
-    monkeypatch.setattr("cutcell_lab.dataset.bind.binding.available_memory", lambda: 1000)
-    try:
-        outcome = bind_isolated(content, "k", QUICK, 60, 1)
-    finally:
-        stop_runners()
+    rig = cutcell.load(folder / "rig1.npz")
+
+    class Asking:
+        def bind(self, content, key, parameters, limit, reserve):
+            reserve(memory_needed(rig, parameters))
+            raise AssertionError("it was let")
+
+    monkeypatch.setattr(binding, "available_memory", lambda: 1000)
+    monkeypatch.setattr(binding, "lend_runner", lambda: nullcontext(Asking()))
+    outcome = bind_isolated(Content("file", {}), "k", QUICK, 60, 1)
     assert "memory" in outcome.error
     assert outcome.record["passing"]
 
@@ -179,8 +183,10 @@ def test_a_second_attempt_charges_memory_once(monkeypatch):
 
 FAKE = """
 import sys, os, time
-from pickle import load
-from cutcell_lab.dataset.bind.runner import write
+from pickle import dump, load
+def write(pipe, message):
+    dump(message, pipe)
+    pipe.flush()
 out = os.fdopen(os.dup(1), "wb")
 write(out, "ready")
 while True:
@@ -221,18 +227,17 @@ def test_a_crash_or_a_hang_costs_one_asset():
 
 
 def test_a_killed_run_goes_on_to_the_same_store(made, tmp_path):
-    """The command is killed with all that it started, twice, as soon as it has written a file."""
+    """The command is killed with all that it started, as soon as it has written a file."""
     folder, store, _ = made
     goal = tmp_path / "store"
     options = ["--resolution", "12", "--workers", "1", "--quiet"]
     command = [sys.executable, "-m", "cutcell", "dataset", "bind", str(folder), str(goal), *options]
-    for wanted in (1, 2):
-        process = subprocess.Popen(command, start_new_session=True)
-        while process.poll() is None and len(list(goal.glob("??/*.npz"))) < wanted:
-            time.sleep(0.01)
-        assert process.poll() is None, "it ended before it was killed"
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+    process = subprocess.Popen(command, start_new_session=True)
+    while process.poll() is None and not list(goal.glob("??/*.npz")):
+        time.sleep(0.01)
+    assert process.poll() is None, "it ended before it was killed"
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
     for half in goal.rglob(".cutcell-*"):
         os.utime(half, (0, 0))
     subprocess.run(command, check=True)
@@ -287,7 +292,7 @@ def test_faces_are_found_from_edges():
         faces_of_edges(np.zeros((4, 3)), square)
 
 
-def test_wrong_inputs_are_told(tmp_path, made):
+def test_wrong_inputs_are_told(tmp_path, made, monkeypatch):
     folder, _, _ = made
     with pytest.raises(FileError, match="no such file"):
         find_sources([tmp_path / "none"])
@@ -299,6 +304,7 @@ def test_wrong_inputs_are_told(tmp_path, made):
         find_sources([tmp_path / "all.npz"])
     with pytest.raises(FileError, match="holds other files"):
         bind_all([folder], folder, QUICK)
+    monkeypatch.setattr("cutcell_lab.dataset.bind.cluster.CONNECT", "100ms")
     with pytest.raises(CutcellError, match="no Dask scheduler"):
         bind_all([folder], tmp_path / "s", QUICK, scheduler="tcp://127.0.0.1:1")
     with pytest.raises(ParameterError, match="time_limit"):
@@ -315,10 +321,10 @@ def test_the_manifest_has_hashes_times_and_memory(made):
     assert json.loads((store / "store.json").read_text())["method"]["resolution"] == 12
 
 
-def test_a_second_call_keeps_the_rows_of_the_first(made, tmp_path):
+def test_a_second_call_keeps_the_rows_of_the_first(made, tmp_path, scheduler):
     folder, _, _ = made
     for name in ("rig0", "rig1"):
-        report = bind_all([folder / f"{name}.npz"], tmp_path / "store", QUICK, workers=1)
+        report = bind_all([folder / f"{name}.npz"], tmp_path / "store", QUICK, scheduler=scheduler)
         assert [row["name"] for row in report.rows] == [name]
     store = Store(tmp_path / "store")
     assert [row["name"] for row in store.manifest()] == ["rig0", "rig1"]

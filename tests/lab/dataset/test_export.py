@@ -25,13 +25,13 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def store(tmp_path_factory):
+def store(tmp_path_factory, scheduler):
     root = tmp_path_factory.mktemp("exported")
     (root / "rigs").mkdir()
     for k, kind in enumerate(("body", "robot", "hand")):
         cutcell.save(root / "rigs" / f"{k}.npz", generate(kind, k, detail=14, clean=True))
     method = cutcell.PAPER.with_options(resolution=16)
-    bind_all([root / "rigs"], root / "store", Parameters(method), workers=1)
+    bind_all([root / "rigs"], root / "store", Parameters(method), scheduler=scheduler)
     return root / "store"
 
 

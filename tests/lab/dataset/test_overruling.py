@@ -24,7 +24,7 @@ NAMES = ("original", "units", "order", "pose")
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def found(tmp_path_factory, scheduler):
     """Audit a character, two copies of it, and the same in another pose."""
     folder = tmp_path_factory.mktemp("rigs")
     for name, rig in planted().items():
@@ -32,7 +32,7 @@ def found(tmp_path_factory):
             weights = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
             weights[:, 0] = 1
             cutcell.save(folder / f"{name}.npz", rig.with_weights(weights))
-    return audit([folder], points=256, workers=1), folder
+    return audit([folder], points=256, scheduler=scheduler), folder
 
 
 def pair_of(found, *names):
@@ -60,9 +60,10 @@ def test_a_pair_that_is_called_a_duplicate_is_one(found):
     assert len(set(result.labels)) == 1
 
 
-def test_of_two_sets_what_has_no_other_is_kept(found):
+def test_of_two_sets_what_has_no_other_is_kept(found, scheduler):
     _, folder = found
-    crossed = audit([folder / "units.npz"], [folder / "order.npz"], points=256, workers=1)
+    pair = [folder / "units.npz"], [folder / "order.npz"]
+    crossed = audit(*pair, points=256, scheduler=scheduler)
     assert crossed.keep == []
     assert crossed.overrule(crossed.pairs[0], DIFFERENT).keep == ["units"]
 
