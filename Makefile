@@ -34,20 +34,26 @@ exit $$((tests ? tests : lint))
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help app test quick test-networks test-processors lint format assets docs lock clean
+.PHONY: help app test quick test-core test-viewers test-lab test-app test-nightly test-networks test-processors lint format assets docs lock clean
 
 help: ## Show this list
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
-		| awk -F'|' '{ printf "%-14s %s\n", $$1, $$2 }'
+	@grep -hE '^[a-z -]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z -]+):.*## /  make \1|/' \
+		| awk -F'|' '{ printf "%-22s %s\n", $$1, $$2 }'
 
 app: $(VENV)/.app ## Open the page; pass options on by ARGS='--no-show --port 5010 rig.glb'
 	@$(PYTHON) -m cutcell app $(ARGS)
 
-test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcell -x' for some
-	$(check_and_test)
+test: $(VENV)/.tools ## Check style and types, run all but nightly tests; ARGS='tests/cutcell -x' for some
+	$(call check_and_test,-m "not nightly")
 
-quick: $(VENV)/.tools ## Check style and types, run all tests that are not marked slow
-	$(call check_and_test,-m "not slow" --durations 10 --durations-min 2)
+quick: $(VENV)/.tools ## Check style and types, run all tests marked neither slow nor nightly
+	$(call check_and_test,-m "not slow and not nightly" --durations 10 --durations-min 2)
+
+test-core test-viewers test-lab test-app: $(VENV)/.tools ## Run the tests of one part
+	@$(PYTHON) -m pytest $(WORKERS) $(ARGS) tests/$(subst core,cutcell,$(@:test-%=%))
+
+test-nightly: $(VENV)/.tools ## Run the tests of the wheel, of a full disk and of the benchmarks
+	@$(PYTHON) -m pytest $(WORKERS) -m nightly $(ARGS)
 
 # A tiny head learns first, as people would let it; then all that needs torch is tested.
 test-networks: $(VENV)/.networks $(VENV)/.tools ## Install torch, train a tiny network, test networks

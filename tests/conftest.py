@@ -90,6 +90,13 @@ def rigs() -> list[Path]:
 
 
 @pytest.fixture(scope="session")
+def rig_of_each_maker(rigs) -> list[Path]:
+    """Of the real characters, the smallest that each program wrote."""
+    smallest = sorted(rigs, key=lambda path: path.stat().st_size, reverse=True)
+    return sorted({path.name.partition("_")[0]: path for path in smallest}.values())
+
+
+@pytest.fixture(scope="session")
 def demo_paths() -> list[Path]:
     """GLB files of the demo characters, which are part of the project."""
     paths = sorted((ROOT / "assets").glob("*.glb"))

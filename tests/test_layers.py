@@ -95,11 +95,11 @@ def test_torch_is_imported_by_what_needs_it_alone():
 
 def test_importing_the_core_is_quick():
     code = "import time; t = time.process_time(); import cutcell; print(time.process_time() - t)"
-    seconds = [
+    seconds = (
         float(subprocess.run([sys.executable, "-c", code], capture_output=True, cwd=ROOT).stdout)
         for _ in range(3)
-    ]
-    assert min(seconds) < IMPORT_SECONDS
+    )
+    assert any(taken < IMPORT_SECONDS for taken in seconds)
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ import pytest
 
 from tests.signals import reset_signals
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("app", "assets", "cutcell", "lab", "viewers")

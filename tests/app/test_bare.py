@@ -24,26 +24,35 @@ def bare_arm():
 
 @pytest.fixture
 def bare(session, loop):
-    """Return a session on which a bare mesh stands, with all panels built for a rig before."""
+    """Return a session on which a bare mesh stands."""
     session.state.resolution = 16
-    loading.show_rig(session, arm_rig())
-    loop.run_until(lambda: session.state.binding is not None)
-    session.built = [panels(session), bone(session), export(session), messages(session)]
-    for panel in PANELS:
-        session.state.panel = panel
-    loading.show_rig(session, bare_arm())
-    loop.run_until(lambda: session.state.bare_graph is not None)
-    loop.run_until(lambda: not session.tasks.running)
+    show_bare(session, loop)
     return session
 
 
-def test_the_panel_graph_opens_and_shows_it(bare):
-    state = bare.state
+def show_bare(session, loop):
+    loading.show_rig(session, bare_arm())
+    loop.run_until(lambda: session.state.bare_graph is not None)
+    loop.run_until(lambda: not session.tasks.running)
+
+
+@pytest.fixture
+def after_a_rig(bound, loop):
+    """Return a session on which a bare mesh stands, with all panels built for a rig before."""
+    bound.built = [panels(bound), bone(bound), export(bound), messages(bound)]
+    for panel in PANELS:
+        bound.state.panel = panel
+    show_bare(bound, loop)
+    return bound
+
+
+def test_the_panel_graph_opens_and_shows_it(after_a_rig):
+    state = after_a_rig.state
     assert state.panel == "graph"
     assert state.binding is None
     assert "0 joints" in summary(state)
     assert not summary(state).endswith("|  ")
-    assert not bare.built[1].visible
+    assert not after_a_rig.built[1].visible
     assert f"{len(state.graph.nodes):,} nodes" in summary(state)
     actors = resolve(state).actors
     assert "interior edges" in actors
@@ -51,15 +60,15 @@ def test_the_panel_graph_opens_and_shows_it(bare):
     assert "bone" not in to_query(state)
 
 
-@pytest.mark.parametrize("panel", PANELS)
-def test_every_panel_can_be_looked_at(bare, loop, panel):
-    bare.state.panel = panel
-    loop.run_for(0.1)
-    assert bare.state.message is None
-    assert "body" in resolve(bare.state).actors
-    _, place = bare.built[0]
-    told = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
-    assert (told == [NO_SKELETON]) == (panel not in ("graph", "check", "learn"))
+def test_every_panel_can_be_looked_at(after_a_rig, loop):
+    state, (_, place) = after_a_rig.state, after_a_rig.built[0]
+    for panel in PANELS:
+        state.panel = panel
+        loop.run_for(0.1)
+        assert state.message is None, panel
+        assert "body" in resolve(state).actors, panel
+        told = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
+        assert (told == [NO_SKELETON]) == (panel not in ("graph", "check", "learn")), panel
 
 
 @pytest.mark.parametrize("panel", [panel.id for panel in PANELS.values() if not panel.needs_audit])
@@ -77,8 +86,8 @@ def test_check_is_rendered_without_a_skeleton():
     assert set(shown.actors) == {"body"}
 
 
-def test_cuts_slices_and_keys_do_no_harm(bare, loop):
-    state = bare.state
+def test_cuts_slices_and_keys_do_no_harm(after_a_rig, loop):
+    bare, state = after_a_rig, after_a_rig.state
     for change in (
         {"cut_axis": "x"},
         {"slicing": True},

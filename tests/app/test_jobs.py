@@ -6,7 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from cutcell_app.jobs.jobs import MAX_UNRESPONSIVE, PATIENCE, Gate, Jobs, Newest, on_its_thread
+from cutcell_app.jobs.jobs import MAX_UNRESPONSIVE, Gate, Jobs, Newest, on_its_thread
+
+LESS = 0.2
+"""Seconds of patience in a test."""
 
 
 @pytest.fixture
@@ -170,29 +173,35 @@ def nothing(*given):
     pass
 
 
-def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told):
+@pytest.fixture
+def impatient(monkeypatch):
+    """Let stopped work be waited for less long."""
+    monkeypatch.setattr("cutcell_app.jobs.jobs.PATIENCE", LESS)
+
+
+def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told, impatient):
     go, started = threading.Event(), threading.Event()
     deaf, other = Jobs(loop), Jobs(loop)
     deaf.start(deaf_work(go, started), nothing, nothing, nothing)
     assert started.wait(120)
     other.start(lambda progress: "done", told.append, told.append, nothing)
-    loop.run_for(PATIENCE + 0.3)
+    loop.run_for(LESS + 0.3)
     assert told == [], "it is wanted, and others wait for it"
     deaf.cancel()
     loop.run_until(lambda: told == ["done"])
     go.set()
 
 
-def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told):
+def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told, impatient):
     go, deaf = threading.Event(), Jobs(loop)
     for _ in range(MAX_UNRESPONSIVE + 1):
         started = threading.Event()
         deaf.start(deaf_work(go, started), nothing, nothing, nothing)
-        assert started.wait(PATIENCE + 120)
+        assert started.wait(LESS + 120)
     deaf.cancel()
     other = Jobs(loop)
     other.start(lambda progress: "done", told.append, told.append, nothing)
-    loop.run_for(PATIENCE + 0.5)
+    loop.run_for(LESS + 0.5)
     assert told == []
     go.set()
     loop.run_until(lambda: told == ["done"])

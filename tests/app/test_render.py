@@ -15,19 +15,25 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import cutcell
+import cutcell.binding
+import cutcell.io
 import cutcell_viewers
 from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
+from cutcell.runtime.progress import silent
 from cutcell_app.files.table_export import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
+from cutcell_app.render import scene as describing
 from cutcell_app.render.options import READERS
 from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
+from cutcell_app.scenes import sweep
 from cutcell_app.state.tour import TOUR
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig
 from tests.viewers.textures import wall
 
+DEMOS = demo_path("robot").parent
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 
 
@@ -39,6 +45,41 @@ def rig():
 @pytest.fixture(scope="module")
 def binding(rig):
     return cutcell.bind(rig, 16)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def demos_once():
+    """Load and bind each demo once for all commands here; rigs and bindings are frozen."""
+    load, bind = cutcell.io.load, cutcell.binding.bind
+    rigs, bindings = {}, {}
+
+    def load_once(path, **options):
+        path = Path(path).resolve()
+        if path.parent != DEMOS or any(options.values()):
+            return load(path, **options)
+        if path not in rigs:
+            rigs[path] = load(path)
+        return rigs[path]
+
+    def bind_once(rig, *resolution, method=cutcell.ANIMATION, progress=silent):
+        if not any(rig is one for one in rigs.values()):
+            return bind(rig, *resolution, method=method, progress=progress)
+        key = id(rig), resolution, method
+        if key not in bindings:
+            bindings[key] = bind(rig, *resolution, method=method, progress=progress)
+        return bindings[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cutcell.io, "load", load_once)
+        patch.setattr(cutcell.binding, "bind", bind_once)
+        patch.setattr(describing, "bind", bind_once)
+        yield
+
+
+@pytest.fixture
+def short_sweeps(monkeypatch):
+    """Let a sweep end after so many frames that it is known how it runs."""
+    monkeypatch.setattr(sweep, "SECONDS", 1.2)
 
 
 @pytest.fixture
@@ -160,7 +201,7 @@ def test_the_wave_is_filmed_from_the_bone_to_the_farthest_vertex(drawn, tmp_path
 
 
 @pytest.mark.parametrize("panel", ["graph", "distance"])
-def test_the_cut_is_filmed_through_the_whole_body(drawn, tmp_path, panel):
+def test_the_cut_is_filmed_through_the_whole_body(drawn, short_sweeps, tmp_path, panel):
     result = run(
         demo_path("robot"), tmp_path / "a.gif", "--panel", panel, "--cut", "x", "--sweep", "cut"
     )
@@ -318,7 +359,7 @@ def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
 
 
 @pytest.mark.slow
-def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
+def test_the_documents_commands_are_understood(drawn, short_sweeps, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "character.glb").symlink_to(demo_path("biped"))
     for demo in ("biped", "biped_soup", "biped_cape"):

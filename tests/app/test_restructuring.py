@@ -32,7 +32,7 @@ def fitted(session, loop):
     correct.correct(session, chain())
     rebound(session, loop)
     session.state.mirrored = False
-    loop.run_for(0.8)  # what follows at once would be one step with what was before
+    session.history.part()  # what follows is a step of its own
     return session
 
 

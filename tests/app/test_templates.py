@@ -7,9 +7,8 @@ import pytest
 import cutcell
 from cutcell.rig import Rig, Skeleton
 from cutcell_app.commands import correct, export, keys, loading, moving, templates
-from cutcell_app.layout.sidebar import sidebar
 from cutcell_app.panels.joints import joints
-from cutcell_app.panels.templates import CHANGED, NONE, chosen_template
+from cutcell_app.panels.templates import CHANGED, NONE, chosen_template, skeleton_menu
 from cutcell_app.scenes import resolve
 from cutcell_app.state.corrections import to_text
 from tests.viewers.arm import arm_rig
@@ -35,10 +34,8 @@ def bare(session, loop):
 
 @pytest.fixture
 def fitted(bare, loop):
-    bare.built = sidebar(bare)
-    (bare.menu,) = [
-        s for s in pmui.Column(*bare.built).select(pmui.Select) if s.label == "Skeleton"
-    ]
+    bare.section = skeleton_menu(bare)
+    (bare.menu,) = bare.section.select(pmui.Select)
     bare.menu.value = "Chain"
     loop.run_until(lambda: bare.state.binding is not None)
     settled(bare, loop)
@@ -141,7 +138,7 @@ def test_a_skeleton_of_ones_own_is_called_so(fitted):
 def test_the_menu_is_only_for_meshes_without_a_skeleton(fitted, loop):
     loading.show_rig(fitted, arm_rig())
     loop.run_until(lambda: fitted.state.binding is not None)
-    assert not fitted.built[0][1].visible
+    assert not fitted.section.visible
     assert templates.is_template({"hand", *(f"thumb.{n}" for n in (1, 2, 3))}, "hand") is False
 
 
@@ -151,7 +148,7 @@ def joint_fields(session):
 
 def test_a_joint_is_renamed(fitted, loop):
     state, weights = fitted.state, fitted.state.weights
-    loop.run_for(0.8)  # what follows at once would be one step with what was before
+    fitted.history.part()  # what follows is a step of its own
     state.joint = 1
     field = joint_fields(fitted)["Name"]
     assert field.value == "bone.2"

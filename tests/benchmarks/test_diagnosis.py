@@ -9,7 +9,7 @@ from cutcell_lab.benchmarks.damages import DAMAGES, Damaged
 from tests.benchmarks.markdown import read_tables
 from tests.cutcell.diagnosis.worm import worm
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 
 def test_found_and_missed_are_told(capsys, tmp_path, monkeypatch):

@@ -12,7 +12,7 @@ from cutcell_lab.benchmarks.rigs import ROOT
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 DEMO = str(ROOT / "assets" / "rabbit.glb")
 

@@ -12,7 +12,7 @@ from cutcell_lab.benchmarks import document, quality
 from tests.conftest import SHARED_RIGS
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_named_rigs_are_measured_and_printed(demo_paths, tmp_path, capsys):
     path = next(p for p in demo_paths if p.stem == "biped_soup")
     out, plot = tmp_path / "out.json", tmp_path / "plot.svg"
@@ -25,7 +25,7 @@ def test_named_rigs_are_measured_and_printed(demo_paths, tmp_path, capsys):
         quality.main([str(path), "--methods", "wishes"])
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_document_is_written_and_taken_up_again(demo_paths, tmp_path, monkeypatch, capsys):
     """One rig and a torn file: first one method, then another; then nothing is left to do."""
     shared, docs = tmp_path / "shared", tmp_path / "docs"

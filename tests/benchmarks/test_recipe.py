@@ -34,7 +34,7 @@ def edges_by_place(nodes, edges, anchor):
     return {tuple(sorted(edge)) for edge in name[edges].tolist()}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("cast", casters())
 @pytest.mark.parametrize("resolution", [8, 24])
 def test_the_same_graph(cast, resolution):
@@ -63,7 +63,7 @@ def test_the_same_distances_from_the_same_sources():
     np.testing.assert_allclose(ours.joint, theirs, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_nearly_the_same_weights():
     mesh = torus()
     joints = np.array([[0.33, 0, 0], [0, 0.33, 0.02], [-0.33, 0, 0]])

@@ -83,7 +83,7 @@ FILES = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", FILES)
 def test_every_format_gives_back_what_was_saved(tmp_path, name, capsys):
     path = FILES[name](tmp_path / name)

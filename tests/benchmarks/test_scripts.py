@@ -15,7 +15,7 @@ DEMO = str(ROOT / "assets" / "robot.glb")
 TINY = ["--resolutions", "8", "--repeats", "1", "--mesher-limit", "1"]
 
 # Open3D and its companions warn while they are loaded.
-pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
+pytestmark = [pytest.mark.nightly, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
 
 
 @pytest.mark.parametrize("name", [name for name in speed.TABLES if name not in ("bind", "start")])

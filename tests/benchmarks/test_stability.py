@@ -5,7 +5,7 @@ import pytest
 import cutcell
 from cutcell_lab.benchmarks.stability import ALLOWED, change
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 
 @pytest.mark.parametrize("name", ["khronos_Fox", "khronos_RiggedFigure", "quaternius_trex"])

@@ -6,7 +6,7 @@ import pytest
 from cutcell_lab.benchmarks import weight_changes
 from tests.benchmarks.markdown import read_tables
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 
 def test_a_changed_character_is_listed_with_its_cause(small, capsys, tmp_path, monkeypatch):

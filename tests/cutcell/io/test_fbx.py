@@ -195,6 +195,7 @@ def test_it_cannot_be_written(load, tmp_path):
         cutcell.save(tmp_path / "out.fbx", rig)
 
 
+@pytest.mark.isolated
 class TestDamage:
     @pytest.mark.parametrize("part", [0.05, 0.5, 0.8])
     @pytest.mark.parametrize("way", ["text 7.4", "binary 7.4", "text 6.1"])

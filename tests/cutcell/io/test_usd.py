@@ -168,6 +168,7 @@ def test_a_mesh_without_a_skeleton_loads(load):
     assert {part.name for part in rig.parts} == {"body", "floor"}
 
 
+@pytest.mark.isolated
 class TestDamage:
     @pytest.mark.parametrize(
         ("content", "message"),
@@ -205,6 +206,7 @@ class TestDamage:
             cutcell.load(inner / "a.usda")
 
 
+@pytest.mark.isolated
 def test_without_the_library_it_says_what_to_install(load, tmp_path, monkeypatch):
     (tmp_path / "pxr.py").write_text("raise ModuleNotFoundError(name='pxr')")
     monkeypatch.syspath_prepend(tmp_path)

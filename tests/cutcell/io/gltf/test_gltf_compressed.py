@@ -94,6 +94,7 @@ class TestDracoDetails:
         with pytest.raises(F, match=rf"^rig\.glb: .*{message}"):
             loaded(builder)
 
+    @pytest.mark.isolated
     @pytest.mark.parametrize(
         "spoil",
         [
@@ -108,6 +109,7 @@ class TestDracoDetails:
         with pytest.raises(F, match=r"^rig\.glb: its Draco compression cannot be undone: mesh 0"):
             loaded(draco_column(spoil(draco_bytes())))
 
+    @pytest.mark.isolated
     def test_a_decoder_that_crashes_or_hangs_is_a_sentence(self, loaded, monkeypatch):
         code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
         monkeypatch.setattr("cutcell.isolated.run.COMMAND", (sys.executable, "-c", code))

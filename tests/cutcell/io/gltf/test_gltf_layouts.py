@@ -310,7 +310,7 @@ def test_a_document_that_refers_to_bytes_that_are_not_there_is_refused(tmp_path,
 
 
 @settings(
-    max_examples=150,
+    max_examples=60,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(data=st.data())
