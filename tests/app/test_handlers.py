@@ -184,7 +184,7 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
     monkeypatch.setattr(
         Visitor, "tell", lambda self, **message: tell(self, type="ready", pictures=True)
     )
-    visitor = Visitor(here.address, "?rig=robot")
+    visitor = Visitor(here.address, "?rig=robot&resolution=16")
     wait_until(lambda: begun and begun[-1].state.binding is not None, 120)
     visitor.close()
 
@@ -192,7 +192,7 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
 def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
     wait_until(lambda: not here.sessions)
     monkeypatch.setattr(handlers, "MAX_SESSIONS", 2)
-    visitors = [Visitor(here.address, "?rig=robot") for _ in range(2)]
+    visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
     assert len(here.sessions) == 2
     answer = get(here)
     assert answer.status == 503
@@ -207,7 +207,7 @@ def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monke
 def test_one_client_cannot_fill_the_server(here, monkeypatch):
     wait_until(lambda: not here.sessions)
     monkeypatch.setattr(handlers, "MAX_SESSIONS_OF_CLIENT", 2)
-    visitors = [Visitor(here.address, "?rig=robot") for _ in range(2)]
+    visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
     assert upgrade(here, here.address) == 503
     assert get(here).status == 200, "the server has room for others"
     visitors[0].close()

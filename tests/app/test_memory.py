@@ -44,16 +44,16 @@ def sessions(monkeypatch):
 
 
 def test_ended_sessions_are_held_by_nothing(address, sessions):
-    visitors = [Visitor(address) for _ in range(3)]
+    visitors = [Visitor(address, "?resolution=16") for _ in range(2)]
     for visitor in visitors:
         visitor.wait_for(BOUND)
-    assert len(sessions) == 3
-    assert len({id(session.state) for session in sessions}) == 3
-    assert len({session.folder for session in sessions}) == 3
+    assert len(sessions) == 2
+    assert len({id(session.state) for session in sessions}) == 2
+    assert len({session.folder for session in sessions}) == 2
     for visitor in visitors:
         visitor.close()
     end = time.monotonic() + 120
     while len(sessions) and time.monotonic() < end:
-        time.sleep(0.2)
+        time.sleep(0.05)
         gc.collect()
     assert not len(sessions), "something still holds sessions that ended"

@@ -198,7 +198,7 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
 def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loop):
     state = painter.state
     state.brush_radius = 0.5
-    for vertex in range(0, len(arm_rig().mesh.vertices), 25):
+    for vertex in range(0, len(arm_rig().mesh.vertices), 75):
         stroke(painter, vertex)
         settled(painter, loop)
     held = state.corrections

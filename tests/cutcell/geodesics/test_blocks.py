@@ -18,7 +18,7 @@ def blocks_of(mesh, resolution):
     return place, (steps >= 0).all(axis=1), find_blocks(nodes, resolution, steps)
 
 
-@pytest.mark.parametrize("resolution", [28, 29, 30, 31])
+@pytest.mark.parametrize("resolution", [29, 30])
 @pytest.mark.parametrize("name", ["ball", "torus", "flipped"])
 def test_a_block_is_eight_deep_points_laid_out_from_the_middle(name, resolution):
     place, deep, block = blocks_of(meshes.ALL[name](), resolution)
