@@ -109,22 +109,9 @@ def small(monkeypatch):
     monkeypatch.setattr("cutcell_app.commands.export.FILM_PIXELS", 64 * 48)
 
 
-def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
-    bound.state.panel = "pose"
-    name, rest = taken(loop, export_picture, bound)
-    assert name == "arm-pose.png"
-    bound.state.turns = {1: (0, 0, 60)}
-    _, turned = taken(loop, export_picture, bound)
-    bound.state.param.update(moving=True, clip=0)
-    bound.view.time = 0.5
-    _, halfway = taken(loop, export_picture, bound)
-    assert len({rest, turned, halfway}) == 3
-    assert all(content.startswith(b"\x89PNG") for content in (rest, turned, halfway))
-    assert list(bound.folder.iterdir()) == []
-
-
-@pytest.mark.parametrize("panel", PANELS)
-def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel, monkeypatch):
+@pytest.fixture
+def orders(monkeypatch):
+    """Instead of drawing, remember what was to be drawn."""
     orders = []
 
     def remember(order, path, progress):
@@ -132,6 +119,33 @@ def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel
         path.write_bytes(b"drawn")
 
     monkeypatch.setattr("cutcell_app.commands.export.draw_apart", remember)
+    return orders
+
+
+def test_a_picture_is_drawn_and_leaves_no_file(bound, loop, small):
+    bound.state.panel = "pose"
+    name, content = taken(loop, export_picture, bound)
+    assert name == "arm-pose.png"
+    assert content.startswith(b"\x89PNG")
+    assert list(bound.folder.iterdir()) == []
+
+
+def test_pictures_show_what_is_seen_in_its_pose(bound, loop, orders):
+    bound.state.panel = "pose"
+    taken(loop, export_picture, bound)
+    bound.state.turns = {1: (0, 0, 60)}
+    taken(loop, export_picture, bound)
+    bound.state.param.update(moving=True, clip=0)
+    bound.view.time = 0.5
+    taken(loop, export_picture, bound)
+    rest, turned, halfway = (order.description.pose for order in orders)
+    assert rest is None or np.allclose(rest, np.eye(4))
+    assert not np.allclose(turned, np.eye(4))
+    assert not np.allclose(turned, halfway)
+
+
+@pytest.mark.parametrize("panel", PANELS)
+def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel, orders):
     bound.state.param.update(panel=panel, cut_axis="z")
     taken(loop, export_motion, bound, "gif")
     shown = orders[0].description
@@ -147,14 +161,7 @@ def test_no_motion_is_filmed_before_there_are_weights(session):
 
 
 @pytest.mark.parametrize("what", ["front", "cut"])
-def test_the_wavefront_or_the_cut_is_filmed_where_it_is_shown(bound, loop, what, monkeypatch):
-    orders = []
-
-    def remember(order, path, progress):
-        orders.append(order)
-        path.write_bytes(b"drawn")
-
-    monkeypatch.setattr("cutcell_app.commands.export.draw_apart", remember)
+def test_the_wavefront_or_the_cut_is_filmed_where_it_is_shown(bound, loop, what, orders):
     bound.state.param.update(panel="distance", cut_axis="x", wave=what == "front")
     name, _ = taken(loop, export_sweep, bound, "gif")
     assert name == "arm-distance.gif"
