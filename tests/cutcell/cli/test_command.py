@@ -156,7 +156,7 @@ def test_main_runs_the_command(monkeypatch, capsys):
 
 
 def test_real_characters_bind_and_stay_in_order(run, rigs, tmp_path):
-    for path in rigs[:3]:
+    for path in rigs[1:3]:
         out = tmp_path / path.name
         assert run("bind", path, out, "-r", 24, "--quiet").exit_code == 0
         before, after = cutcell.load(path), cutcell.load(out)
