@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from xml.etree import ElementTree
 
-from .tables import Table, publish
+from cutcell_lab.benchmarks.tables import Table, publish
 
 NIGHTLY = "wheel, full disk and benchmarks: nightly"
 BROWSER = "browser"
@@ -45,7 +45,7 @@ def table(before: Path, after: Path) -> Table:
     (counts, seconds), (new_counts, new_seconds) = read(before), read(after)
     found = Table(
         "Tests",
-        ["folder", "tests before", "after", "seconds before", "after", "share"],
+        ["folder", "tests before", "tests after", "seconds before", "seconds after", "share"],
         "Seconds are summed over all tests, as each worker counts them.",
     )
     rows = sorted(seconds.keys() - {BROWSER}, key=lambda name: -seconds[name])
