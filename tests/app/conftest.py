@@ -15,6 +15,9 @@ from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served
 from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
+from tests.viewers.conftest import binding, rig
+
+__all__ = ["binding", "rig"]
 
 LIGHT = (*FLAGS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
 """Without a graphics card, OpenGL is a slow way to draw what is no 3D view: half of all work."""

@@ -16,17 +16,6 @@ from cutcell_app.scenes import Memo
 from cutcell_app.scenes.compare import title_of
 from cutcell_app.scenes.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.state import State
-from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
 
 
 def facts(rig, binding, vertex):

@@ -37,16 +37,6 @@ DEMOS = demo_path("robot").parent
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 
 
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
-
-
 @pytest.fixture(scope="module", autouse=True)
 def demos_once():
     """Load and bind each demo once for all commands here; rigs and bindings are frozen."""

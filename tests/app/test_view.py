@@ -14,12 +14,6 @@ from cutcell_viewers.description import Cut, Description
 from cutcell_viewers.graph_scene import graph_scene
 from cutcell_viewers.palette import DARK
 from cutcell_viewers.weights_scene import weights_scene
-from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
 
 
 @pytest.fixture(scope="module")

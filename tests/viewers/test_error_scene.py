@@ -16,12 +16,6 @@ from cutcell_viewers.error_scene import (
     millimetres,
 )
 from cutcell_viewers.skin import distances_between
-from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
 
 
 @pytest.fixture(scope="module")

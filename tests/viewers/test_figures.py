@@ -61,7 +61,7 @@ def test_captions_are_written_as_they_are(scenes, tmp_path):
 
 @pytest.mark.parametrize("ending", ["pdf", "svg", "png"])
 def test_a_figure_is_the_same_in_each_run(scenes, tmp_path, ending):
-    one, other = (drawn(tmp_path / f"{name}.{ending}", scenes[:2]) for name in "ab")
+    one, other = (drawn(tmp_path / f"{name}.{ending}", scenes[:1]) for name in "ab")
     assert one.read_bytes() == other.read_bytes()
     assert b"Date" not in one.read_bytes()
 

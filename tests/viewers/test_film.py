@@ -20,7 +20,6 @@ from cutcell_viewers.palette import DARK, LIGHT
 from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
 from cutcell_viewers.worker import draw_apart
-from tests.viewers.arm import arm_rig
 
 pytestmark = pytest.mark.slow
 
@@ -30,11 +29,6 @@ for out; do :; done
 exec /bin/cat >"${out#file:}"
 """
 """A program that stands for ffmpeg: it copies what it is given."""
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
 
 
 @pytest.fixture(scope="module")

@@ -26,12 +26,6 @@ from cutcell_viewers.section_scene import (
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 from cutcell_viewers.start_scene import first_distances, start_scene
 from cutcell_viewers.weights_scene import count_colors, difference_colors, dominant_colors
-from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
 
 
 @pytest.fixture(scope="module")

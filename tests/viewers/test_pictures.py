@@ -19,19 +19,8 @@ from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
 from cutcell_viewers.scene import Scene, render_png
 from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
-from tests.viewers.arm import arm_rig
 
 SIZE = (240, 180)
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
 
 
 @pytest.fixture(scope="module")

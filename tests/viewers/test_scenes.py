@@ -25,17 +25,7 @@ from cutcell_viewers.palette import UNREACHED, colormap, to_bytes
 from cutcell_viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
 from cutcell_viewers.skin import moved
 from cutcell_viewers.weights_scene import weights_scene
-from tests.viewers.arm import WORLD, arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
+from tests.viewers.arm import WORLD
 
 
 def test_the_body_stands_upright_in_the_scene(rig):

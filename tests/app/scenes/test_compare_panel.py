@@ -20,16 +20,6 @@ from tests.viewers.arm import arm_rig
 
 
 @pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
-
-
-@pytest.fixture(scope="module")
 def euclidean(rig, binding):
     return measured(rig, "euclidean", binding, 16, silent)
 

@@ -25,16 +25,6 @@ from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
 
 
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
-
-
 @pytest.fixture
 def state(rig, binding):
     state = State(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)

@@ -14,19 +14,8 @@ from cutcell_lab.metrics import deformation_error
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.pose_scene import joint_turns, turn
-from tests.viewers.arm import arm_rig
 
 angle = st.floats(-180, 180)
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
 
 
 @pytest.fixture

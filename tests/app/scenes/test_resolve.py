@@ -13,17 +13,6 @@ from cutcell_app.scenes.graph import build_shown
 from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
 from cutcell_app.state import LAYERS, PANELS, State
 from cutcell_viewers.palette import DARK, LIGHT
-from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return arm_rig()
-
-
-@pytest.fixture(scope="module")
-def binding(rig):
-    return cutcell.bind(rig, 16)
 
 
 @pytest.fixture

@@ -251,7 +251,7 @@ def test_a_killed_run_goes_on_to_the_same_store(made, tmp_path):
 
 @pytest.mark.parametrize("processes", [False, True])
 def test_no_other_machine_can_reach_the_workers(processes):
-    with connected(None, 2, processes):
+    with connected(None, 1, processes):
         ours = [psutil.Process(), *psutil.Process().children(recursive=True)]
         sockets = [socket for process in ours for socket in process.net_connections("inet")]
         addresses = {s.laddr.ip for s in sockets if s.status == psutil.CONN_LISTEN}

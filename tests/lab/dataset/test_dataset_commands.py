@@ -50,7 +50,8 @@ def test_from_an_archive_to_training_data(tmp_path):
     assert "lacks faces" in report
     assert "data:image/png;base64" in report
 
-    audited = run("audit", store, "--out", tmp_path / "audit", "--points", 64, "--json")
+    options = ("--points", 64, "--workers", 1, "--json")
+    audited = run("audit", store, "--out", tmp_path / "audit", *options)
     assert len(json.loads(audited.stdout)["keep"]) == 3
     assert "twin" in (tmp_path / "audit" / "report.html").read_text()
 
