@@ -38,7 +38,7 @@ from cutcell_lab.dataset.audit.points import Normalised, normalised
 from cutcell_lab.dataset.bind.cluster import connected
 from cutcell_lab.dataset.read.sources import read_source
 from cutcell_lab.dataset.read.store import MANIFEST, read_table
-from tests.lab.dataset.test_audit import planted
+from tests.lab.dataset.planted import planted
 
 from .document import fill
 from .rigs import ROOT, SHARED

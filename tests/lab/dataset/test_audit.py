@@ -1,14 +1,11 @@
 """The audit equals brute force on every pair, and finds what was planted."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
 import cutcell
 from cutcell.errors import MeshError, ParameterError
-from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell_assets.generate import KINDS, generate
 from cutcell_lab.dataset.audit.audit_files import save_audit
 from cutcell_lab.dataset.audit.auditing import audit
@@ -17,6 +14,7 @@ from cutcell_lab.dataset.audit.duplicates import Pair, clusters
 from cutcell_lab.dataset.audit.likeness import Similarity, features_of, likeness, same_skeletons
 from cutcell_lab.dataset.audit.points import Normalised, normalised, sample_surface
 from cutcell_lab.dataset.read.store import read_table
+from tests.lab.dataset.planted import planted
 
 ALIKE = Similarity("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -117,44 +115,6 @@ def test_exact_duplicates_do_not_vanish_and_minpts_counts():
     assert clusters(9, pairs, 0.01, 2).tolist() == [0, 0, 1, 1, -1, -1, 2, 2, 2]
     assert clusters(9, pairs, 0.01, 3).tolist() == [-1] * 6 + [0, 0, 0]
     assert clusters(3, [], 0.01, 2).tolist() == [-1] * 3
-
-
-def planted() -> dict[str, Rig]:
-    """Return a beast, and the same as people make it differ."""
-    rig = generate("beast", 4, detail=32, clean=True)
-    mesh, skeleton = rig.mesh, rig.skeleton
-    order = np.random.default_rng(0).permutation(len(mesh.vertices))
-    inverse = np.argsort(order)
-    finer = generate("beast", 4, detail=44, clean=True)
-    mirror = np.array([-1.0, 1, 1])
-    turns = np.tile(np.eye(3), (len(skeleton.joints), 1, 1))
-    for joint in range(1, len(turns)):
-        turns[joint] = cutcell.pose.axis_rotation("xyz"[joint % 3], 35.0 * (-1) ** joint)
-    moved = cutcell.forward_kinematics(skeleton, turns)
-    posed = cutcell.linear_blend_skinning(mesh.vertices, rig.weights, moved)
-    there = np.einsum("jab,jb->ja", moved[:, :3, :3], skeleton.joints) + moved[:, :3, 3]
-    centre = mesh.vertices[np.argmax(mesh.vertices[:, 1])]
-    cape = centre + np.array([[0, 0, -0.15], [0, 0, 0.15], [0, 0.2, 0.15], [0, 0.2, -0.15]])
-    sides = np.array([[0, 1, 2], [0, 2, 3]]) + len(mesh.vertices)
-    dressed = TriangleMesh(
-        np.concatenate([mesh.vertices, cape]), np.concatenate([mesh.faces, sides])
-    )
-    return {
-        "original": rig,
-        "order": Rig(TriangleMesh(mesh.vertices[order], inverse[mesh.faces]), skeleton),
-        "units": Rig(
-            TriangleMesh(mesh.vertices * 100 + 7, mesh.faces),
-            replace(skeleton, joints=skeleton.joints * 100 + 7),
-        ),
-        "remeshed": finer,
-        "mirrored": Rig(
-            TriangleMesh(mesh.vertices * mirror, mesh.faces[:, ::-1]),
-            replace(skeleton, joints=skeleton.joints * mirror),
-        ),
-        "clothes": Rig(dressed, skeleton),
-        "pose": Rig(TriangleMesh(posed, mesh.faces), Skeleton(there, skeleton.parents)),
-        "other": generate("beast", 5, detail=32, clean=True),
-    }
 
 
 @pytest.fixture(scope="module")

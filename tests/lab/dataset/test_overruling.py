@@ -16,7 +16,7 @@ from cutcell_lab.dataset.audit.audit_files import (
 )
 from cutcell_lab.dataset.audit.auditing import audit
 from cutcell_lab.dataset.audit.duplicates import DIFFERENT, DUPLICATE
-from tests.lab.dataset.test_audit import planted
+from tests.lab.dataset.planted import planted
 
 pytestmark = pytest.mark.slow
 
