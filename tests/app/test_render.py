@@ -15,7 +15,7 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import cutcell
-import cutcell.binding
+import cutcell.editing
 import cutcell.io
 import cutcell_viewers
 from cutcell.cli.app import app
@@ -40,7 +40,7 @@ DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 @pytest.fixture(scope="module", autouse=True)
 def demos_once():
     """Load and bind each demo once for all commands here; rigs and bindings are frozen."""
-    load, bind = cutcell.io.load, cutcell.binding.bind
+    load, bind = cutcell.io.load, cutcell.editing.bind
     rigs, bindings = {}, {}
 
     def load_once(path, **options):
@@ -61,7 +61,7 @@ def demos_once():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cutcell.io, "load", load_once)
-        patch.setattr(cutcell.binding, "bind", bind_once)
+        patch.setattr(cutcell.editing, "bind", bind_once)
         patch.setattr(describing, "bind", bind_once)
         yield
 
