@@ -26,7 +26,7 @@ class ParameterError(CutcellError):
 
 
 class TooLargeError(CutcellError):
-    """What was asked for would not fit in memory."""
+    """The requested computation would not fit in memory."""
 
 
 class MissingLibraryError(CutcellError):

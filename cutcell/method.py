@@ -232,7 +232,7 @@ class Method:
 
 
 ANIMATION = Method()
-"""Weights to animate with (docs/falloff.md): what `bind` does when it is not told otherwise."""
+"""Weights to animate with (docs/falloff.md): the default of `bind`."""
 PAPER = Method(connectivity=6, falloff="paper", max_influences=None)
 """The paper's method: a 6-connected graph, leaf bones as points, equation 1 for all joints."""
 METHODS: dict[MethodName, Method] = {"animation": ANIMATION, "paper": PAPER}

@@ -22,7 +22,7 @@ def lock_joints(
 ) -> NDArray[np.float64]:
     """Put back the rig's own weights of some joints; the others share what these leave.
 
-    If no other joint has weight, the rig's own weights of the others come back, too. A vertex
+    If no other joint has weight, the rig's own weights of the others are restored, too. A vertex
     without weights in the file keeps those of the joints that are not locked, if it has any.
 
     Shapes: weights (n, j); returns (n, j).

@@ -19,7 +19,7 @@ LARGEST = 1e60
 
 
 def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> int:
-    """Return `value` as an int, or say which range it must lie in."""
+    """Return `value` as an int, or raise an error that names its range."""
     if not _is_real(value) or not low <= value <= high or int(value) != value:
         reason = f"; {why}" if why else ""
         raise ParameterError(
@@ -36,7 +36,7 @@ def check_fraction(name: str, value: Any) -> float:
 
 
 def check_number(name: str, value: Any, low: float, high: float) -> float:
-    """Return `value` as a float, or say which range it must lie in."""
+    """Return `value` as a float, or raise an error that names its range."""
     if not _is_real(value) or not low <= _as_float(value) <= high:  # also catches nan
         raise ParameterError(
             f"{name} must be a number from {low:g} to {high:g}, not {shown(value)}"

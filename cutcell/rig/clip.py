@@ -33,7 +33,7 @@ class Motion(Protocol):
 
 @runtime_checkable
 class Movable(Protocol):
-    """A motion that knows by itself how it goes on when joints stand elsewhere at rest."""
+    """A motion that can be adapted to joints with another rest position."""
 
     def moved(self, by: NDArray[np.float64]) -> Motion:
         """Return it for joints that were moved; see `Clip.moved`."""
@@ -108,7 +108,7 @@ class Clip(Derived):
     def transforms(self) -> NDArray[np.float64]:
         """Skinning matrices at `times`, shape (f, j, 4, 4): 128 bytes a frame and joint.
 
-        A file's clip is sampled anew for each look at this.
+        A file's clip is sampled again on each access.
         """
         if isinstance(self.motion, Frames):
             return self.motion.transforms
@@ -198,7 +198,7 @@ class Frames:
 
 @dataclass(frozen=True, eq=False)
 class Rebased(Derived):
-    """Another motion, of joints that stand elsewhere at rest or hang on other parents.
+    """A motion adapted to other rest positions or other parents.
 
     A joint of that motion keeps its motion relative to its parent; others do not move against
     theirs.

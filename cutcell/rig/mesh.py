@@ -38,7 +38,7 @@ class TriangleMesh(Summarized):
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
 
-    if TYPE_CHECKING:  # what is given may be of other types than what is kept
+    if TYPE_CHECKING:  # arguments may have other types than the fields
 
         def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None: ...
 

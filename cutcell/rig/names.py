@@ -48,7 +48,7 @@ CONTROL_PARTS = (
 )
 """The same inside longer words, as in `LEGCONTROL`."""
 UNSURE = _set("ik ikp fk cancel weapon holster prop props item")
-"""Words of a joint that either moves skin itself or only stands for another joint."""
+"""Words of a joint that either moves skin itself or only controls another joint."""
 SOCKET_PARTS = ("socket", "slot", "attach")
 """Words of a joint that things are hung on, which are meshes of their own."""
 FOOT_ROLLS = _set("heel toe toes foot ball bank")

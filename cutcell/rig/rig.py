@@ -199,7 +199,7 @@ class Rig(Summarized):
     def with_joints(self, joints: ArrayLike) -> Rig:
         """Return the same rig with joints that stand elsewhere at rest, shape (j, 3).
 
-        What hangs on a joint, other joints and attachments, stays where it is. Clips turn each
+        The children of a joint, other joints and attachments, stay in place. Clips turn each
         joint as before, about its new place. `cutcell.save` writes it all.
 
         Raises

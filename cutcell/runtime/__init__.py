@@ -1,1 +1,1 @@
-"""What the computation runs on: compiled kernels, threads, memory, progress and files."""
+"""Infrastructure of the computation: compiled kernels, threads, memory, progress and files."""

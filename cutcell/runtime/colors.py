@@ -20,7 +20,7 @@ def linear(srgb: ArrayLike) -> NDArray[np.float64]:
 def srgb(linear: ArrayLike) -> NDArray[np.uint8]:
     """Return linear colours, from 0 to 1, as they are stored in pictures, from 0 to 255.
 
-    What is no number counts as 0, and what is out of range as the nearest end.
+    NaN becomes 0, and values out of range the nearest end.
 
     References
     ----------

@@ -186,7 +186,7 @@ def _write(folder: Path, name: str, content: bytes) -> None:
 @cache
 def folders() -> tuple[Path, ...]:
     """List the folders of compiled functions: next to the sources, and in the user's cache."""
-    chosen: str = vars(config)["CACHE_DIR"]  # what NUMBA_CACHE_DIR says
+    chosen: str = vars(config)["CACHE_DIR"]  # the value of NUMBA_CACHE_DIR
     bases = [os.path.abspath(chosen)] if chosen else []
     bases.append(str(PACKAGE / "__pycache__"))
     users = platformdirs.user_cache_dir("cutcell", appauthor=False)

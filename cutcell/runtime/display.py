@@ -11,9 +11,9 @@ import unicodedata
 from collections.abc import Sequence
 
 MAX_LETTERS = 80
-"""Of a name."""
+"""Longest name that is shown whole."""
 MAX_NAMES = 6
-"""Of a list of names."""
+"""Largest number of listed names."""
 MAX_OF_A_MESSAGE = 2000
 
 _HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
@@ -25,7 +25,7 @@ _NOT_PLAIN = re.compile(r"[^\n\x20-\x7e]")
 
 
 class _Escapes(dict[int, str]):
-    """What stands for each character, as far as it was needed."""
+    """Replacement of each character that occurred."""
 
     def __missing__(self, code: int) -> str:
         char = chr(code)

@@ -12,7 +12,7 @@ import psutil
 from ..errors import TooLargeError
 
 SHARE = 0.8
-"""Of the free memory that one thing may take."""
+"""Share of the free memory that one result may take."""
 BYTES_PER_WEIGHT = 8
 
 CGROUPS = Path("/sys/fs/cgroup")
@@ -20,7 +20,7 @@ OWN_CGROUP = Path("/proc/self/cgroup")
 
 
 def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
-    """Refuse weights of so many vertices and joints if they do not fit in memory."""
+    """Raise an error if weights of some vertices and joints do not fit in memory."""
     needed = float(vertices) * joints * copies * BYTES_PER_WEIGHT
     check_room(
         needed,
@@ -47,7 +47,7 @@ def gigabytes(size: float) -> str:
 def available_memory() -> int:
     """Return how many bytes new data may take without swapping.
 
-    The limits of control groups (containers), of version 2, count as well.
+    The limits of control groups (containers), version 2, are respected.
     """
     return min([psutil.virtual_memory().available, *map(_free_in, _limited_groups())])
 

@@ -25,7 +25,7 @@ def share_of(tell: Tell, low: float, high: float) -> Tell:
 
 
 class Shares:
-    """Progress of a stage that threads share: told as a whole, by one of them at a time.
+    """Progress of a stage that threads share, reported as a whole by one of them at a time.
 
     Parameters
     ----------

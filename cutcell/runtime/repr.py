@@ -12,7 +12,7 @@ class Summarized:
 
     @property
     def _summary(self) -> dict[str, Any]:
-        """What the object is represented by, at most ten values by their names."""
+        """Values in the representation of the object, at most ten by name."""
         raise NotImplementedError
 
     def __repr__(self) -> str:

@@ -16,6 +16,6 @@ def python_environment() -> dict[str, str]:
 
 
 def end_first_without_memory() -> None:
-    """Let Linux end this process, not the one that started it, when memory runs out."""
+    """Make Linux end this process, not its parent, when memory runs out."""
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")

@@ -27,7 +27,7 @@ Second = TypeVar("Second")
 POLL_EVERY = 0.1
 """Seconds between two repeated reports."""
 MAX_ABANDONED = 3
-"""Threads that may go on after their work was cancelled, until they report again."""
+"""Largest number of threads whose cancelled work still runs."""
 
 _here = threading.local()
 _abandoned: WeakSet[threading.Thread] = WeakSet()
@@ -102,7 +102,7 @@ def cancellable(work: Callable[[Progress], Result], progress: Progress, first_st
 
     The work runs in a thread of its own. The calling thread repeats the last report ten times a
     second, and passes on at once what `progress` raises. The work then ends at its next report,
-    with no one waiting for it. While `MAX_ABANDONED` such threads go on, new work waits.
+    with no one waiting for it. While `MAX_ABANDONED` such threads run, new work waits.
     """
     if progress is silent or getattr(_here, "is_worker", False) or getattr(_here, "is_run", False):
         return work(progress)

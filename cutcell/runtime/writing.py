@@ -1,8 +1,8 @@
 """Files that are written whole or not at all.
 
-What is written goes to temporary files in the same folder, and from there to its place when all
-of it is on the disk. Temporary files of a process that was killed are removed by whoever writes to
-that folder after some hours.
+Contents go to temporary files in the same folder, which are renamed once all are on the disk.
+Later writers to that folder remove the temporary files of a process that was killed, after some
+hours.
 """
 
 from __future__ import annotations

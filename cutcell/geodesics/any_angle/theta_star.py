@@ -45,7 +45,7 @@ NEAR = 2
 """Lattice cells: how near a corner of a triangle must be to have line of sight to a parent. A
 distant one may lie behind a fold of the surface."""
 ON_BONE = 0.5
-"""Lattice cells: the nearest joint counts as at least this far when distances are compared with
+"""Lattice cells: smallest distance of the nearest joint when distances are compared with
 it."""
 BUCKETS = 4
 """Buckets for a unit of distance, times R squared: each is at most a hundredth of a cell wide."""
@@ -225,7 +225,7 @@ def _settle(
                 slot = find_room(labels, each, v, joint)
                 if labels[slot].after == SETTLED:
                     continue
-                # Of equally near joints the first by position stays.
+                # Equally near joints: the first by position stays.
                 limit = labels[slot].distance
                 if labels[slot].joint != joint:
                     limit *= 1 + TIE if joint < labels[slot].joint else 1 - TIE

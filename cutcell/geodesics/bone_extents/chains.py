@@ -20,7 +20,7 @@ from .probe import BodyProbe
 from .rest_axis import rest_directions
 
 SAME_PLACE = 1e-6
-"""Of the longest side: joints at most this far apart coincide."""
+"""Largest distance of coincident joints, relative to the longest side."""
 ONWARD = 0.5
 """Cosine: a child within 60 degrees of the rest axis continues the bone; others branch off."""
 SIDE_BRANCH = 3.0
@@ -163,7 +163,7 @@ def _ends(
     rest: NDArray[np.float64] | None,
     in_face: NDArray[np.bool_],
 ) -> tuple[list[int], ...]:
-    """List where the bones of each joint end; the joint itself stands for a leaf bone.
+    """List where the bones of each joint end; a leaf bone ends at the joint itself.
 
     Bones run to the joint's children, see `_branches`. A head whose children are all in the face
     has a leaf bone besides. A joint outside the body has no bone.
@@ -218,7 +218,7 @@ def _inferred_bones(
     together: NDArray[np.bool_],
     probe: BodyProbe,
 ) -> tuple[list[int], ...]:
-    """Infer bones from the ends of chains to joints that hang on a control, as from shin to foot.
+    """Infer bones from ends of chains to joints whose parent is a control, as from shin to foot.
 
     Each must be the other's clear choice: the nearest through the body, onward and not far. No
     other bone ends at either. `together`, shape (j, j), marks joints that one skin holds.

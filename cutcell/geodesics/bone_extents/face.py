@@ -24,7 +24,7 @@ LETTERS = "目眼瞳眉顎口唇歯舌耳鼻"
 def face_parts(skeleton: Skeleton) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Find the joints of faces, and of these the eyes, lids and brows, both of shape (j,).
 
-    What other joints hang on, such as a head named after a face, is none.
+    A joint with other children, such as a head named after a face, is none.
     """
     in_face = np.array([is_face_part(name) for name in skeleton.names])
     in_face &= ~(skeleton.subtree & ~in_face & skeleton.deform).any(axis=1)

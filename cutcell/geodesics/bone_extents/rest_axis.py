@@ -14,7 +14,7 @@ MOST = 0.6
 MIN_BONES = 3
 """Fewer bones are no evidence."""
 SHORTEST = 1e-3
-"""Of the longest side: shorter bones have no direction."""
+"""Length, relative to the longest side, below which a bone has no direction."""
 
 
 def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[np.float64] | None:

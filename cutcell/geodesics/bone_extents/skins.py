@@ -12,7 +12,7 @@ from ...method import MAX_RESOLUTION, Method
 from ...rig import Rig, Skeleton
 
 SIDE_BY_SIDE = 1.25
-"""Several characters are at least so much longer together than the largest of them."""
+"""Smallest ratio of the length of several characters to that of the largest of them."""
 MAX_REFINEMENT = 4
 """Rays are as many as the square of the resolution, so characters far apart are bound coarser."""
 

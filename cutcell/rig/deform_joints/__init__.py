@@ -1,4 +1,4 @@
-"""Which joints move the skin, told without any weights, and chosen by a person."""
+"""Joints that move the skin: guessed without weights, or chosen by a person."""
 
 from .guess import DeformJoints, choose_deform, deform_joints
 

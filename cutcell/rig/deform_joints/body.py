@@ -22,7 +22,7 @@ BLOCK = 2_000_000
 
 
 class Body:
-    """Samples of the surface of a mesh, each with the area that it stands for."""
+    """Samples of the surface of a mesh, each with its area."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
         low, high = mesh.bounds

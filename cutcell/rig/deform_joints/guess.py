@@ -1,4 +1,4 @@
-"""Which joints may carry weight: by their names, where they lie in the body, or a choice."""
+"""Which joints may carry weight: by their names, their place in the body, or a choice."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ OUTSIDE = 0.04
 FEW_BONES = 0.15
 """Distance from the body at which a root may lie whose children are all other joints."""
 SAME_PLACE = 0.01
-"""Distance within which a control stands for another joint, in longest sides."""
+"""Largest distance of a control from the joint that it controls, relative to the longest side."""
 THROUGH_BODY = 0.5
 """Part of a link between two joints that must run in or near the body for it to be a bone."""
 ALONG = np.linspace(0.1, 0.9, 9)

@@ -16,9 +16,9 @@ from ...runtime.compiled import compiled
 from ..rig_falloff.division import MIN_CELLS, Division, _facing
 
 NEAR = 5
-"""Joints of a vertex that are told apart, the nearest."""
+"""Number of the nearest joints of a vertex that are distinguished."""
 FARTHEST = 100.0
-"""Ratios are cut here; it also stands for what is infinite or does not exist."""
+"""Largest ratio, also used for infinite and missing ones."""
 WORDS = (
     "head skull", "jaw mouth chin lip teeth tongue", "eye lid brow", "neck",
     "spine chest hips pelvis torso abdomen body stomach waist belly rib",

@@ -112,7 +112,7 @@ class Diffusion:
             size, coarse = np.bincount(group), np.bincount(group, coarse)
             points = [np.bincount(group, axis) / size for axis in surface.points.T]
             surface = SurfaceOperators.over(np.stack(points, axis=1), group[surface.faces])
-        # Of many unknowns the minimum degree takes SuperLU minutes to find.
+        # For many unknowns SuperLU takes minutes to find the minimum degree.
         order = "MMD_AT_PLUS_A" if matrix.shape[0] <= MANY else "COLAMD"
         options = {"SymmetricMode": True}
         factors = splu(matrix.tocsc(), order, diag_pivot_thresh=0.0, options=options)

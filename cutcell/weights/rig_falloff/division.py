@@ -36,7 +36,7 @@ MANY = 200_000
 NEAREST = 3
 """Bones that a vertex has straight distances to where all measured joints are barred from it."""
 MIN_SHARE = 1e-3
-"""A vertex with a smaller share of a joint does not count as that joint's surface."""
+"""Smallest share of a joint at a vertex of that joint's surface."""
 
 
 @dataclass(frozen=True, eq=False)
