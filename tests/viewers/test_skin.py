@@ -38,7 +38,8 @@ def test_points_without_weight_stand_still():
 
 def test_what_hangs_on_a_joint_moves_with_it():
     rig = arm_rig()
-    pose = forward_kinematics(rig.skeleton, np.tile(np.eye(3), (3, 1, 1)), [1.0, 2, 3])
+    pose = forward_kinematics(rig.skeleton, np.tile(np.eye(3), (3, 1, 1)))
+    pose[:, :3, 3] += [1.0, 2, 3]
     result = moved([[0.0, 0, 0]], rigid_skin([2]), pose)
     np.testing.assert_allclose(result, [[1, 2, 3]])
 
