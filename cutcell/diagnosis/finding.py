@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from string import Formatter
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,44 +14,221 @@ SEVERITIES = ("error", "warning", "note")
 """The most severe first. Error: it breaks a binding or another program. Warning: most likely a
 fault. Note: information."""
 
-TITLES = {
-    "unreadable": "Unreadable file",
-    "cyclic-joints": "Cycle of joints",
-    "stray-vertices": "Stray vertices",
-    "no-interior": "No interior",
-    "inverted-faces": "Inverted faces",
-    "cracks": "Cracks",
-    "holes": "Missing faces",
-    "rims": "Open rims",
-    "non-manifold-edges": "Non-manifold edges",
-    "duplicate-faces": "Duplicate faces",
-    "degenerate-faces": "Degenerate faces",
-    "self-intersections": "Self-intersections",
-    "unwelded-vertices": "Unwelded vertices",
-    "unused-vertices": "Unused vertices",
-    "unreachable-vertices": "Unreachable vertices",
-    "thin-parts": "Thin parts",
-    "boneless-components": "Components without a bone",
-    "joints-outside": "Joints outside the body",
-    "coincident-joints": "Coincident joints",
-    "zero-length-bones": "Bones of zero length",
-    "flat-hierarchy": "No hierarchy",
-    "control-joints": "Control joints",
-    "unused-joints": "Unused joints",
-    "invalid-weights": "Invalid weights",
-    "unweighted-vertices": "Vertices without weight",
-    "unnormalised-weights": "Weights that do not sum to one",
-    "leaked-weights": "Leaked weights",
-    "stray-weights": "Stray weights",
-    "weight-islands": "Islands of weight",
-    "far-parts": "Parts that follow a far joint",
-    "stretched-edges": "Edges that stretch",
-    "flipped-faces": "Faces that flip",
-    "lost-volume": "Volume that is lost",
-    "asymmetric-weights": "Left and right differ",
-    "torn-seams": "Seams that tear",
-    "many-influences": "More than four influences",
-}
+REMOVE = "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again."
+CLEANED = "remove weight that is implausible through the body from these vertices"
+MAX_LINES = 40
+"""Maximum number of details of a finding."""
+
+
+class Kind(NamedTuple):
+    """Title, severity and texts of the findings of a code.
+
+    Texts are templates: `{faces:face/are}` becomes the number of faces with noun and verb.
+    """
+
+    title: str
+    severity: str
+    message: str
+    advice: str
+    repair: str = ""
+
+
+KINDS = {
+    "unreadable": Kind(
+        "Unreadable file", "error", "{error}", "Correct the file as described."
+    ),
+    "cyclic-joints": Kind(
+        "Cycle of joints", "error", "{error}", "Remove the cycle from the parents."
+    ),
+    "stray-vertices": Kind(
+        "Stray vertices", "error",
+        "{vertices:vertex/lie} away from the rest, up to {farthest:.0f} times its size. The "
+        "lattice spans all of it, so its cells are too large for the body.",
+        "Delete them, or move them back to their neighbours.",
+    ),
+    "no-interior": Kind(
+        "No interior", "error",
+        "No point of the lattice lies inside the mesh: distances run over its surface alone "
+        "(R = {resolution}).",
+        "Close the mesh, or give it walls; raise the resolution if it is only thin.",
+    ),
+    "inverted-faces": Kind(
+        "Inverted faces", "warning",
+        "{faces:face/are} turned inside out, {part} of the surface: renderers that cull back "
+        "faces show holes there.",
+        "Flip them. Binding already treats them as flipped.",
+        "flip them, and the normals that point inward",
+    ),
+    "cracks": Kind(
+        "Cracks", "note",
+        "{edges:edge/lie} along open rims less than {width:.2g} from others that fit: seams that "
+        "were not welded.",
+        "Merge vertices by a distance of {width:.2g}.",
+    ),
+    "holes": Kind(
+        "Missing faces", "warning",
+        "{holes:triangle/are} missing from the surface.",
+        "Fill the holes. Small ones do not harm the binding.",
+    ),
+    "rims": Kind(
+        "Open rims", "note",
+        "{rims:open rim} with {edges:edge}: the surface is not closed there.",
+        "Leave it if it is meant to be open. Large openings make the inside ambiguous.",
+    ),
+    "non-manifold-edges": Kind(
+        "Non-manifold edges", "note",
+        "{edges:edge/are} shared by more than two faces.",
+        "Harmless for binding. Editing tools may stop there: split these edges.",
+    ),
+    "duplicate-faces": Kind(
+        "Duplicate faces", "note",
+        "{faces:face/lie} on another with the same corners.",
+        "Delete them: they flicker when drawn.",
+        "drop them, and keep one of each",
+    ),
+    "degenerate-faces": Kind(
+        "Degenerate faces", "note", "{faces:face/have} no area.", "Delete them.", "drop them"
+    ),
+    "self-intersections": Kind(
+        "Self-intersections", "note",
+        "{least}{faces:face/intersect} others, {part} of the surface.",
+        "Leave it if parts are meant to overlap. Where they overlap they are one body.",
+    ),
+    "unwelded-vertices": Kind(
+        "Unwelded vertices", "note",
+        "No face shares its vertices with another: {used:,} vertices, of which welding leaves "
+        "{left:,}.",
+        "Harmless: binding welds them. Merge them by distance for other programs.",
+    ),
+    "unused-vertices": Kind(
+        "Unused vertices", "note",
+        "No face uses {vertices:vertex}.",
+        "Delete them if nothing needs them. They are bound by straight distances.",
+    ),
+    "unreachable-vertices": Kind("Unreachable vertices", "note", "{why}", "{advice}"),
+    "thin-parts": Kind(
+        "Thin parts", "note",
+        "Below {part} of the surface the body is too thin for a lattice point at R = {resolution}.",
+        "{advice}",
+    ),
+    "boneless-components": Kind(
+        "Components without a bone", "note",
+        "{loose:,} of {total:,} connected components {contain} no bone.",
+        "No action needed if each follows the joint that is named here.",
+    ),
+    "joints-outside": Kind(
+        "Joints outside the body", "note",
+        "{joints:joint/lie} outside of the body, up to {away:.0%} of its longest side away, and "
+        "may carry weight.",
+        "Move them into the body, or let them carry no weight.",
+    ),
+    "coincident-joints": Kind(
+        "Coincident joints", "note",
+        "{number} joints that may carry weight are in the same position as others.",
+        "Let one of each group carry weight: the skin is divided arbitrarily between them.",
+    ),
+    "zero-length-bones": Kind(
+        "Bones of zero length", "note",
+        "{joints:joint/lie} exactly on the parent.",
+        "Move one of the two, or let only one carry weight.",
+    ),
+    "flat-hierarchy": Kind(
+        "No hierarchy", "note",
+        "None of the {number} joints has a parent: they span no bones, and turning one moves no "
+        "other.",
+        "Give the joints their parents, if the program that moves them has any.",
+    ),
+    "control-joints": Kind(
+        "Control joints", "note",
+        "{joints:joint/move} no skin: controls, end markers, sockets and roots.",
+        "No action needed. Let one carry weight if it is a bone after all.",
+    ),
+    "unused-joints": Kind(
+        "Unused joints", "note",
+        "{joints:joint/carry} no weight in the file, though in or near the body.",
+        "No action needed if they are helpers. Binding leaves them without weight, too.",
+    ),
+    "invalid-weights": Kind(
+        "Invalid weights", "error",
+        "{vertices:vertex/have} weights in the file that are negative or no numbers; these count "
+        "as none.",
+        "Paint or compute them anew.",
+        "leave these weights out, and scale the others to sum to one",
+    ),
+    "unweighted-vertices": Kind(
+        "Vertices without weight", "error",
+        "{vertices:vertex/have} no weight: left behind when others move.",
+        "Weight them, or bind again.",
+        "give them the weights of the nearest vertex that has some",
+    ),
+    "unnormalised-weights": Kind(
+        "Weights that do not sum to one", "warning",
+        "In the file, the weights of {vertices:vertex/do} not sum to one, but to {low:.3g} to "
+        "{high:.3g}: other programs may scale or shift the skin there.",
+        "Normalise them.",
+        "scale them to sum to one",
+    ),
+    "leaked-weights": Kind(
+        "Leaked weights", "warning",
+        "{vertices:vertex/follow} joints that are far away through the body, past nearer ones.",
+        REMOVE, CLEANED,
+    ),
+    "stray-weights": Kind(
+        "Stray weights", "warning",
+        "{joints:joint/hold} hardly any weight, yet would get much of the skin when the rig is "
+        "bound again, for no other is nearer.",
+        "{advice}",
+    ),
+    "weight-islands": Kind(
+        "Islands of weight", "warning",
+        "{vertices:vertex/follow} a joint whose influence is elsewhere: islands of it lie away "
+        "from its bones, with other joints between.",
+        REMOVE, CLEANED,
+    ),
+    "far-parts": Kind(
+        "Parts that follow a far joint", "warning",
+        "{parts:part/follow} a joint that is far away, though another is near.",
+        "Make each rigid to the nearest joint, unless it is meant to follow the other.",
+    ),
+    "stretched-edges": Kind(
+        "Edges that stretch", "note",
+        "Edges at {vertices:vertex} become {times:g} times as long or more when a joint turns by "
+        "{degrees:g}°.",
+        "Blend the weights there, or bind again.",
+    ),
+    "flipped-faces": Kind(
+        "Faces that flip", "note",
+        "Up to {most} of the surface is turned over when a joint turns by {degrees:g}°.",
+        "Blend the weights there, or bind again.",
+    ),
+    "lost-volume": Kind(
+        "Volume that is lost", "note",
+        "The body loses up to {most} of its volume when a joint turns by {degrees:g}°.",
+        "Blend the weights over a longer stretch, or bind again.",
+    ),
+    "asymmetric-weights": Kind(
+        "Left and right differ", "note",
+        "{vertices:vertex/follow} other joints than the mirror image does, though mesh and "
+        "skeleton are mirrored.",
+        "Mirror one side, or bind symmetrically.",
+    ),
+    "torn-seams": Kind(
+        "Seams that tear", "note",
+        "At {torn:place} of {places:,} vertices lie together that follow different joints: the "
+        "skin tears open there when it moves.",
+        "Give vertices in one place the same weights.",
+        "give vertices in one place the mean of their weights",
+    ),
+    "many-influences": Kind(
+        "More than four influences", "note",
+        "{vertices:vertex/follow} up to {most} joints; game engines read {limit}.",
+        "Keep the {limit} largest, if an engine is to read it.",
+        "keep the {limit} largest weights of each vertex",
+    ),
+}  # fmt: skip
+"""Each code, in the order of reports."""
+
+TITLES = {code: kind.title for code, kind in KINDS.items()}
 """Title of each code, in the order of reports."""
 
 
@@ -134,6 +312,36 @@ class Finding:
             "parts": [list(part) for part in self.parts],
             "pose": None if self.pose is None else asdict(self.pose),
         }
+
+
+class _Texts(Formatter):
+    """Format templates; arrays count as how many there are."""
+
+    def format_field(self, value: Any, spec: str) -> str:
+        number = len(value) if isinstance(value, np.ndarray | tuple) else value
+        return count(int(number), *spec.split("/")) if len(spec) > 3 else format(number, spec)
+
+
+def found(
+    code: str,
+    *,
+    severity: str = "",
+    details: Sequence[str] = (),
+    pose: Pose | None = None,
+    **values: Any,
+) -> Iterator[Finding]:
+    """Yield the finding of a code, unless no element is at fault; `values` fill its texts."""
+    at = {name: values[name] for name in ("vertices", "faces", "joints") if name in values}
+    if not any(map(len, at.values())):
+        return
+    kind, more = KINDS[code], len(details) - MAX_LINES
+    lines = (*details[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))
+    message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
+    parts = values.get("parts", ())
+    yield Finding(
+        code, severity or kind.severity, message, advice, **at, details=lines, repair=repair,
+        pose=pose, parts=parts,
+    )  # fmt: skip
 
 
 def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:

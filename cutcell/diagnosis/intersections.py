@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..geometry.vectors import between, cross, dot, triangle_normal
 from ..runtime.compiled import compiled
-from .finding import Finding, count, share
+from .finding import Finding, found
 from .subject import Subject
 
 MAX_TESTS = 5_000_000
@@ -25,21 +25,13 @@ MAX_ENTRIES = 40
 
 def find_intersections(subject: Subject) -> Iterator[Finding]:
     """Look for faces that pass through others."""
-    faces = subject.faces
-    if not len(faces):
-        return
-    is_crossed, is_whole = intersecting_faces(subject.points, faces)
-    crossed_faces = subject.whole[is_crossed]
-    if not len(crossed_faces):
-        return
-    least = "" if is_whole else "At least "
-    part = share(subject.areas[crossed_faces].sum(), subject.areas.sum())
-    yield Finding(
+    is_crossed, is_whole = intersecting_faces(subject.points, subject.faces)
+    crossed = subject.whole[is_crossed]
+    yield from found(
         "self-intersections",
-        "note",
-        f"{least}{count(len(crossed_faces), 'face', 'intersect')} others, {part} of the surface.",
-        "Leave it if parts are meant to overlap. Where they overlap they are one body.",
-        faces=crossed_faces,
+        faces=crossed,
+        least="" if is_whole else "At least ",
+        part=subject.area_share(crossed),
     )
 
 

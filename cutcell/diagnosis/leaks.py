@@ -13,10 +13,9 @@ from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
-from ..runtime.display import shown_name
-from .finding import Finding, Pose, count, share
+from .finding import Finding, Pose, count, found, share
 from .subject import Subject
-from .weights import CLEANED, NOTICED, through_body
+from .weights import NOTICED, through_body
 
 STRAY = 0.002
 """Part of all weight: a joint with less in the file was hardly meant to move skin."""
@@ -33,7 +32,6 @@ ASYMMETRIC = 0.01
 """Part of the vertices that may differ as much: artists mend single ones."""
 DEGREES = 45.0
 """How far a joint turns in the pose that shows a finding."""
-MAX_LINES = 40
 
 
 def check_leaks(subject: Subject) -> Iterator[Finding]:
@@ -57,23 +55,18 @@ def _stray(
     stray = np.flatnonzero((shares > 0) & (shares < STRAY) & (owned > OWNED))
     if not len(stray):
         return
-    names = subject.rig.skeleton.names
-    vertices = np.flatnonzero((weights[:, stray] > 0).any(axis=1))
-    worst = int(stray[owned[stray].argmax()])
-    yield Finding(
+    stray = stray[np.argsort(-owned[stray], kind="stable")]
+    yield from found(
         "stray-weights",
-        "warning",
-        f"{count(len(stray), 'joint', 'hold')} hardly any weight, yet would get much of the skin "
-        "when the rig is bound again, for no other is nearer.",
-        _stray_advice(weights[:, stray]),
-        vertices=vertices,
-        joints=stray,
-        details=tuple(
-            f"{shown_name(names[j])}: {100 * shares[j]:.2g}% of the weight, nearest to "
+        vertices=np.flatnonzero((weights[:, stray] > 0).any(axis=1)),
+        joints=np.sort(stray),
+        details=[
+            f"{subject.name(j)}: {100 * shares[j]:.2g}% of the weight, nearest to "
             f"{share(owned[j], 1)} of the surface"
-            for j in stray[np.argsort(-owned[stray], kind="stable")][:MAX_LINES]
-        ),
-        pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
+            for j in stray
+        ],
+        pose=pose_of(subject, int(stray[0]), np.flatnonzero(nearest == stray[0])),
+        advice=_stray_advice(weights[:, stray]),
     )
 
 
@@ -134,24 +127,17 @@ def _islands(
         places.append(islands)
         worst = max(worst, (most, j))
         lines.append(
-            f"{shown_name(subject.rig.skeleton.names[j])}: up to {most:.0%} on "
-            f"{count(len(np.unique(label)), 'island')} of {count(len(islands), 'vertex')}"
+            f"{subject.name(j)}: up to {most:.0%} on {count(len(np.unique(label)), 'island')} of "
+            f"{count(len(islands), 'vertex')}"
         )
     if not joints:
         return
-    at_islands = np.zeros(len(at_welded), bool)
-    at_islands[np.concatenate(places)] = True
-    vertices = subject.vertices_at(at_islands)
-    yield Finding(
+    vertices = subject.vertices_at(np.concatenate(places))
+    yield from found(
         "weight-islands",
-        "warning",
-        f"{count(len(vertices), 'vertex', 'follow')} a joint whose influence is elsewhere: islands "
-        "of it lie away from its bones, with other joints between.",
-        "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again.",
-        repair=CLEANED,
         vertices=vertices,
         joints=np.array(joints),
-        details=tuple(lines[:MAX_LINES]),
+        details=lines,
         pose=pose_of(subject, worst[1], vertices),
     )
 
@@ -173,15 +159,10 @@ def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Find
     if len(asymmetric) <= ASYMMETRIC * len(paired):
         return
     gap = np.abs(weights[paired] - other)[differ > UNLIKE]
-    joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
-    yield Finding(
+    yield from found(
         "asymmetric-weights",
-        "note",
-        f"{count(len(asymmetric), 'vertex', 'follow')} other joints than the mirror image does, "
-        "though mesh and skeleton are mirrored.",
-        "Mirror one side, or bind symmetrically.",
         vertices=asymmetric,
-        joints=joints,
+        joints=np.flatnonzero((gap > UNLIKE).any(axis=0)),
         pose=pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric),
     )
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import face_edges, unit_normals
 from ..geometry.weld import WELD_TOLERANCE, weld
-from .finding import Finding, count, share
+from .finding import Finding, found
 from .intersections import find_intersections
 from .subject import Subject
 
@@ -36,7 +36,8 @@ MANY_CRACKS = 0.25
 def check_mesh(subject: Subject) -> Iterator[Finding]:
     """Look for faults of the surface."""
     yield from _stray(subject)
-    yield from _inverted(subject)
+    inverted = np.flatnonzero(subject.graph.inverted)
+    yield from found("inverted-faces", faces=inverted, part=subject.area_share(inverted))
     yield from _cracks(subject)
     yield from _open(subject)
     yield from _non_manifold(subject)
@@ -47,40 +48,15 @@ def check_mesh(subject: Subject) -> Iterator[Finding]:
 
 
 def _stray(subject: Subject) -> Iterator[Finding]:
-    vertices = subject.rig.mesh.vertices
     used = np.flatnonzero(subject.is_used)
-    points = vertices[used]
+    points = subject.rig.mesh.vertices[used]
     low, high = np.quantile(points, [FEW, 1 - FEW], axis=0)
     size = (high - low).max()
     away = np.maximum(low - points, points - high).max(axis=1)
     stray = used[away > STRAY * size]
-    if not len(stray) or len(stray) > FEW * len(used):
-        return
-    farthest = away.max() / size if size else np.inf
-    yield Finding(
-        "stray-vertices",
-        "error",
-        f"{count(len(stray), 'vertex', 'lie')} away from the rest, up to {farthest:.0f} times its "
-        "size. The lattice spans all of it, so its cells are too large for the body.",
-        "Delete them, or move them back to their neighbours.",
-        vertices=stray,
-    )
-
-
-def _inverted(subject: Subject) -> Iterator[Finding]:
-    inverted = np.flatnonzero(subject.graph.inverted)
-    if not len(inverted):
-        return
-    part = share(subject.areas[inverted].sum(), subject.areas.sum())
-    yield Finding(
-        "inverted-faces",
-        "warning",
-        f"{count(len(inverted), 'face', 'are')} turned inside out, {part} of the surface: "
-        "renderers that cull back faces show holes there.",
-        "Flip them. Binding already treats them as flipped.",
-        faces=inverted,
-        repair="flip them, and the normals that point inward",
-    )
+    if len(stray) <= FEW * len(used):
+        farthest = away.max() / size if size else np.inf
+        yield from found("stray-vertices", vertices=stray, farthest=farthest)
 
 
 def _cracks(subject: Subject) -> Iterator[Finding]:
@@ -106,16 +82,13 @@ def _cracks(subject: Subject) -> Iterator[Finding]:
     is_closed = (np.bincount(which, np.sign(b - a))[which] == 0) & (a != b) & goes_on
     if is_closed.sum() < MIN_CRACK_EDGES:
         return
-    size = subject.graph.lattice.size
-    at_crack = np.zeros(len(points), bool)
-    at_crack[loop[is_closed]] = at_crack[following[is_closed]] = True
-    yield Finding(
+    at_crack = np.concatenate([loop[is_closed], following[is_closed]])
+    yield from found(
         "cracks",
-        "warning" if is_closed.sum() >= MANY_CRACKS * len(loop) else "note",
-        f"{count(int(is_closed.sum()), 'edge', 'lie')} along open rims less than {wide * size:.2g} "
-        "from others that fit: seams that were not welded.",
-        f"Merge vertices by a distance of {wide * size:.2g}.",
+        severity="warning" if is_closed.sum() >= MANY_CRACKS * len(loop) else "note",
         vertices=subject.vertices_at(at_crack),
+        edges=is_closed.sum(),
+        width=wide * subject.graph.lattice.size,
     )
 
 
@@ -143,28 +116,12 @@ def _open(subject: Subject) -> Iterator[Finding]:
     short = np.flatnonzero(lengths == 3)
     corners = np.sort(loop[start[short][:, None] + np.arange(3)], axis=1)
     is_hole[short] = ~_are_faces(corners, subject.faces)  # a lone triangle has such a rim, too
-    holes = int(is_hole.sum())
-    of = np.repeat(np.arange(len(lengths)), lengths)
-    if holes >= HOLES:
-        yield Finding(
-            "holes",
-            "warning",
-            f"{count(holes, 'triangle', 'are')} missing from the surface.",
-            "Fill the holes. Small ones do not harm the binding.",
-            vertices=_on(subject, loop[is_hole[of]]),
-        )
-    else:
-        is_hole[:] = False
-    rims = ~is_hole
-    if rims.any():
-        yield Finding(
-            "rims",
-            "note",
-            f"{count(int(rims.sum()), 'open rim')} with {count(int(lengths[rims].sum()), 'edge')}: "
-            "the surface is not closed there.",
-            "Leave it if it is meant to be open. Large openings make the inside ambiguous.",
-            vertices=_on(subject, loop[rims[of]]),
-        )
+    is_hole &= is_hole.sum() >= HOLES
+    at_hole = np.repeat(is_hole, lengths)
+    holes = subject.vertices_at(loop[at_hole])
+    yield from found("holes", vertices=holes, holes=is_hole.sum())
+    rims = subject.vertices_at(loop[~at_hole])
+    yield from found("rims", vertices=rims, rims=(~is_hole).sum(), edges=(~at_hole).sum())
 
 
 def _are_faces(corners: NDArray[np.int64], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
@@ -175,30 +132,12 @@ def _are_faces(corners: NDArray[np.int64], faces: NDArray[np.int32]) -> NDArray[
     return np.isin(which[len(faces) :], which[: len(faces)])
 
 
-def _on(subject: Subject, places: NDArray[np.int64]) -> NDArray[np.intp]:
-    mask = np.zeros(len(subject.points), bool)
-    mask[places] = True
-    return subject.vertices_at(mask)
-
-
 def _non_manifold(subject: Subject) -> Iterator[Finding]:
-    faces = subject.faces
-    if not len(faces):
-        return
-    sides = face_edges(faces)
+    sides = face_edges(subject.faces)
     key = sides[:, 0].astype(np.int64) * len(subject.points) + sides[:, 1]
     _, which, uses = np.unique(key, return_inverse=True, return_counts=True)
-    edges = int((uses > 2).sum())
-    if not edges:
-        return
     is_at_edge = (uses[which.ravel()] > 2).reshape(-1, 3).any(axis=1)
-    yield Finding(
-        "non-manifold-edges",
-        "note",
-        f"{count(edges, 'edge', 'are')} shared by more than two faces.",
-        "Harmless for binding. Editing tools may stop there: split these edges.",
-        faces=subject.whole[is_at_edge],
-    )
+    yield from found("non-manifold-edges", faces=subject.whole[is_at_edge], edges=(uses > 2).sum())
 
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
@@ -209,17 +148,7 @@ def _doubled(subject: Subject) -> Iterator[Finding]:
     # The two sides of a sheet are no duplicates.
     turn = _rolled(subject.graph.faces[subject.whole])
     same = (turn == turn[first][which.ravel()]).all(axis=1)
-    duplicates = subject.whole[~is_first & same]
-    if not len(duplicates):
-        return
-    yield Finding(
-        "duplicate-faces",
-        "note",
-        f"{count(len(duplicates), 'face', 'lie')} on another with the same corners.",
-        "Delete them: they flicker when drawn.",
-        faces=duplicates,
-        repair="drop them, and keep one of each",
-    )
+    yield from found("duplicate-faces", faces=subject.whole[~is_first & same])
 
 
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -232,36 +161,13 @@ def _degenerate(subject: Subject) -> Iterator[Finding]:
     corners = subject.points[subject.welded[subject.rig.mesh.faces]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     degenerate = np.flatnonzero(subject.is_collapsed | (subject.areas <= FLAT * longest**2))
-    if not len(degenerate) or len(degenerate) == len(subject.areas):
-        return
-    yield Finding(
-        "degenerate-faces",
-        "note",
-        f"{count(len(degenerate), 'face', 'have')} no area.",
-        "Delete them.",
-        faces=degenerate,
-        repair="drop them",
-    )
+    if len(degenerate) < len(subject.areas):
+        yield from found("degenerate-faces", faces=degenerate)
 
 
 def _vertices(subject: Subject) -> Iterator[Finding]:
-    faces = subject.rig.mesh.faces
-    used = int(subject.is_used.sum())
-    if used >= UNWELDED * faces.size and len(faces) > 1:
-        yield Finding(
-            "unwelded-vertices",
-            "note",
-            f"No face shares its vertices with another: {used:,} vertices, of which welding leaves "
-            f"{len(np.unique(subject.welded[subject.is_used])):,}.",
-            "Harmless: binding welds them. Merge them by distance for other programs.",
-            vertices=np.flatnonzero(subject.is_used),
-        )
-    unused = np.flatnonzero(~subject.is_used)
-    if len(unused):
-        yield Finding(
-            "unused-vertices",
-            "note",
-            f"No face uses {count(len(unused), 'vertex')}.",
-            "Delete them if nothing needs them. They are bound by straight distances.",
-            vertices=unused,
-        )
+    faces, used = subject.rig.mesh.faces, np.flatnonzero(subject.is_used)
+    if len(used) >= UNWELDED * faces.size and len(faces) > 1:
+        left = len(np.unique(subject.welded[used]))
+        yield from found("unwelded-vertices", vertices=used, used=len(used), left=left)
+    yield from found("unused-vertices", vertices=np.flatnonzero(~subject.is_used))

@@ -15,9 +15,8 @@ from ..geometry.segments import distance_to_segment
 from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
-from ..runtime.display import shown_name
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
-from .finding import Finding, count, share
+from .finding import Finding, count, found, share
 from .subject import Subject
 
 FAR = 1.5
@@ -36,8 +35,6 @@ MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
-MAX_LINES = 40
-"""Maximum number of listed parts or joints."""
 
 
 def check_parts(subject: Subject) -> Iterator[Finding]:
@@ -45,13 +42,10 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
     if (subject.graph.node_kind == INTERIOR).any():
         yield from _thin(subject)
     else:
-        yield Finding(
+        yield from found(
             "no-interior",
-            "error",
-            "No point of the lattice lies inside the mesh: distances run over its surface alone "
-            f"(R = {subject.graph.lattice.resolution}).",
-            "Close the mesh, or give it walls; raise the resolution if it is only thin.",
             vertices=np.flatnonzero(subject.is_used),
+            resolution=subject.graph.lattice.resolution,
         )
     if subject.distances is not None:
         yield from _unreachable(subject, subject.distances)
@@ -78,19 +72,16 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     part, total = areas[thin].sum(), areas.sum()
     if part < THIN * total and thin.sum() < FEW * used.sum():
         return
-    typical = _median(depth[depth > 0], areas[far][depth > 0])
-    needed = ENOUGH * resolution / typical
+    needed = ENOUGH * resolution / _median(depth[depth > 0], areas[far][depth > 0])
     enough = int(np.ceil(needed / 16) * 16)
-    advice = f"A resolution of {enough} would fill most of them." if enough > resolution else (
-        "Paths run over their skin, which is nearly equivalent."
-    )  # fmt: skip
-    yield Finding(
+    yield from found(
         "thin-parts",
-        "note",
-        f"Below {share(part, total)} of the surface the body is too thin for a lattice point at "
-        f"R = {resolution}.",
-        advice,
         vertices=subject.vertices_at(thin),
+        part=share(part, total),
+        resolution=resolution,
+        advice=f"A resolution of {enough} would fill most of them."
+        if enough > resolution
+        else "Paths run over their skin, which is nearly equivalent.",
     )
 
 
@@ -127,82 +118,67 @@ def _depths(
 
 def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
     lost = np.flatnonzero((distances.fallback == UNREACHED) & subject.is_used)
-    if len(lost):
-        pieces = np.unique(subject.component[subject.welded[lost]])
-        sizes = longest_sides(subject.points, subject.component)
-        large = pieces[sizes[pieces] > SMALL]
-        follows = (
-            "they follow their nearest bones in a straight line"
-            if len(large)
-            else "small components follow what they sit on"
-        )
-        yield Finding(
-            "unreachable-vertices",
-            "warning" if len(large) else "note",
-            f"No path through the body leads from a bone to {count(len(lost), 'vertex')} in "
-            f"{count(len(pieces), 'component')}: {follows}.",
-            "Let the component touch the body, or put a joint into it.",
-            vertices=lost,
-            details=_lines(subject, pieces),
-        )
+    pieces = np.unique(subject.component[subject.welded[lost]])
+    is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
+    follows = (
+        "they follow their nearest bones in a straight line"
+        if is_large
+        else "small components follow what they sit on"
+    )
+    yield from found(
+        "unreachable-vertices",
+        severity="warning" if is_large else "note",
+        vertices=lost,
+        details=_lines(subject, pieces),
+        why=f"No path through the body leads from a bone to {count(len(lost), 'vertex')} in "
+        f"{count(len(pieces), 'component')}: {follows}.",
+        advice="Let the component touch the body, or put a joint into it.",
+    )
     barred = np.flatnonzero(distances.fallback == NOT_ALLOWED)
-    if len(barred):
-        yield Finding(
-            "unreachable-vertices",
-            "note",
-            f"{count(len(barred), 'vertex')} cannot follow the joints that come near: the skin of "
-            "their mesh in the file does not have these.",
-            "Give all meshes one skin.",
-            vertices=barred,
-        )
+    yield from found(
+        "unreachable-vertices",
+        vertices=barred,
+        why=f"{count(len(barred), 'vertex')} cannot follow the joints that come near: the skin of "
+        "their mesh in the file does not have these.",
+        advice="Give all meshes one skin.",
+    )
 
 
 def _loose(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
-    total = int(subject.component.max()) + 1
     used = np.unique(subject.component[subject.welded[subject.is_used]])
     if len(used) < 2:
         return
     faces = subject.graph.faces[subject.whole]
     containment = bone_containment(subject.points, faces, subject.component, distances.bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
-    if not len(loose):
-        return
-    mask = np.zeros(total, bool)
-    mask[loose] = True
-    yield Finding(
+    yield from found(
         "boneless-components",
-        "note",
-        f"{len(loose):,} of {len(used):,} connected components "
-        f"{'contains' if len(loose) == 1 else 'contain'} no bone.",
-        "No action needed if each follows the joint that is named here.",
-        vertices=subject.vertices_at(mask[subject.component]),
+        vertices=subject.vertices_at(np.isin(subject.component, loose)),
         details=_lines(subject, loose),
+        loose=len(loose),
+        total=len(used),
+        contain="contains" if len(loose) == 1 else "contain",
     )
 
 
-def _lines(subject: Subject, pieces: NDArray[np.integer]) -> tuple[str, ...]:
+def _lines(subject: Subject, pieces: NDArray[np.integer]) -> list[str]:
     """Describe components, the largest first: vertex count, and the joint that they follow."""
     piece = np.where(subject.is_used, subject.component[subject.welded], -1)
     sizes = np.bincount(piece[piece >= 0], minlength=int(subject.component.max()) + 1)
-    order = pieces[np.argsort(-sizes[pieces], kind="stable")]
-    lines = [
+    return [
         f"{count(int(sizes[p]), 'vertex', 'follow')} "
-        f"{shown_name(_holder(subject, np.flatnonzero(piece == p)))}"
-        for p in order[:MAX_LINES]
+        f"{subject.name(_holder(subject, np.flatnonzero(piece == p)))}"
+        for p in pieces[np.argsort(-sizes[pieces], kind="stable")]
     ]
-    if len(order) > MAX_LINES:
-        lines.append(f"and {len(order) - MAX_LINES} more")
-    return tuple(lines)
 
 
-def _holder(subject: Subject, vertices: NDArray[np.intp]) -> str:
-    """Return the name of the joint that some vertices follow most: by weights, else the nearest."""
-    weights, names = subject.rig.weights, subject.rig.skeleton.names
+def _holder(subject: Subject, vertices: NDArray[np.intp]) -> int:
+    """Return the joint that some vertices follow most: by weights, else the nearest."""
+    weights = subject.rig.weights
     if weights is not None and weights[vertices].any():
-        return names[int(weights[vertices].sum(axis=0).argmax())]
+        return int(weights[vertices].sum(axis=0).argmax())
     assert subject.distances is not None
-    nearest = subject.distances.nearest_joint[vertices]
-    return names[int(np.bincount(nearest).argmax())]
+    return int(np.bincount(subject.distances.nearest_joint[vertices]).argmax())
 
 
 def check_far_parts(subject: Subject) -> Iterator[Finding]:
@@ -225,21 +201,16 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     ]
     if not far:
         return
-    names = subject.rig.skeleton.names
     far.sort(key=lambda one: -len(one[0]))
-    lines = tuple(
-        f"Part {component[part[0]] + 1} ({count(len(part), 'vertex')}) follows "
-        f"{shown_name(names[j])}; {shown_name(names[nearest])} is nearest"
-        for part, j, nearest in far[:MAX_LINES]
-    )
-    yield Finding(
+    yield from found(
         "far-parts",
-        "warning",
-        f"{count(len(far), 'part', 'follow')} a joint that is far away, though another is near.",
-        "Make each rigid to the nearest joint, unless it is meant to follow the other.",
         vertices=np.sort(np.concatenate([part for part, _, _ in far])),
         joints=np.unique([j for _, j, _ in far]),
-        details=lines,
+        details=[
+            f"Part {component[part[0]] + 1} ({count(len(part), 'vertex')}) follows "
+            f"{subject.name(j)}; {subject.name(nearest)} is nearest"
+            for part, j, nearest in far
+        ],
         parts=tuple((int(part.min()), nearest) for part, _, nearest in far),
     )
 

@@ -12,7 +12,7 @@ from ..graph.fingerprint import mesh_fingerprint, require_same, skeleton_fingerp
 from ..method import check_resolution
 from ..rig import Rig
 from ..runtime.progress import Progress, silent
-from .finding import SEVERITIES, Finding, by_severity
+from .finding import KINDS, SEVERITIES, Finding, by_severity
 from .joints import check_joints
 from .leaks import check_leaks
 from .mesh import check_mesh
@@ -156,11 +156,6 @@ def diagnose(
 
 def unreadable(error: CutcellError) -> Finding:
     """Return the finding of a file that cannot be loaded."""
-    text = str(error)
-    cyclic = "the skeleton has a cycle" in text
-    return Finding(
-        "cyclic-joints" if cyclic else "unreadable",
-        "error",
-        text,
-        "Remove the cycle from the parents." if cyclic else "Correct the file as described.",
-    )
+    is_cyclic = "the skeleton has a cycle" in str(error)
+    code = "cyclic-joints" if is_cyclic else "unreadable"
+    return Finding(code, KINDS[code].severity, str(error), KINDS[code].advice)

@@ -15,8 +15,10 @@ from ..graph.winding.boundary import Boundary, boundary_of
 from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import SPACING, Body
+from ..runtime.display import shown_name
 from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
+from .finding import share
 
 
 class Subject:
@@ -145,6 +147,16 @@ class Subject:
         """Which joints move skin, by names and places."""
         return deform_joints(self.rig.mesh, self.rig.skeleton)
 
-    def vertices_at(self, welded: NDArray[np.bool_]) -> NDArray[np.intp]:
-        """Return the vertices of the file at some welded vertices, shape (k,) bool."""
-        return np.flatnonzero(welded[self.welded] & self.is_used)
+    def area_share(self, faces: NDArray[np.intp]) -> str:
+        """Return the part of the surface that some faces cover, as a text."""
+        return share(self.areas[faces].sum(), self.areas.sum())
+
+    def vertices_at(self, places: NDArray) -> NDArray[np.intp]:
+        """Return the vertices of the file at some welded vertices: their numbers, or a mask."""
+        at = np.zeros(len(self.points), bool)
+        at[places] = True
+        return np.flatnonzero(at[self.welded] & self.is_used)
+
+    def name(self, joint: int | np.integer) -> str:
+        """Return the name of a joint as it is shown."""
+        return shown_name(self.rig.skeleton.names[joint])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import normals
 from ..pose import axis_rotation
-from ..runtime.display import shown_name
-from .finding import Finding, Pose, count, share
+from .finding import Finding, Pose, found, share
 from .subject import Subject
 
 DEGREES = 45.0
@@ -34,7 +33,6 @@ MOVES = 1e-3
 """A vertex that follows a joint less does not count as moved by it."""
 ALL = 1 - 1e-9
 """A vertex that follows a joint as much follows it wholly."""
-MAX_LINES = 40
 
 
 def check_sweep(subject: Subject) -> Iterator[Finding]:
@@ -45,7 +43,7 @@ def check_sweep(subject: Subject) -> Iterator[Finding]:
     faults = sorted(_poses(subject, weights), key=lambda fault: -fault.longest)
     yield from _stretched(subject, faults)
     yield from _flipped(subject, faults)
-    yield from _lost(subject, faults)
+    yield from _lost(subject, faults, weights)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,54 +135,42 @@ def _volume(corners: NDArray[np.float64]) -> float:
 
 
 def _stretched(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    torn = [fault for fault in faults if len(fault.stretched)]
-    if not torn:
-        return
-    places = np.zeros(len(subject.points), bool)
-    places[np.concatenate([fault.stretched for fault in torn])] = True
-    vertices = subject.vertices_at(places)
-    yield Finding(
+    torn = _worst(faults, "longest", 0)
+    yield from found(
         "stretched-edges",
-        message=f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or "
-        f"more when a joint turns by {DEGREES:g}°.",
-        advice="Blend the weights there, or bind again.",
-        vertices=vertices,
+        vertices=subject.vertices_at(_joined(fault.stretched for fault in torn)),
+        times=STRETCH,
         **_evidence(subject, torn, "longest", MIN_STRETCH, "by {} of the longest side"),
     )
 
 
 def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    over = [fault for fault in faults if fault.flipped_area > FLIPPED]
-    over.sort(key=lambda fault: -fault.flipped_area)
-    if not over:
-        return
-    faces = subject.whole[np.unique(np.concatenate([fault.flipped for fault in over]))]
-    yield Finding(
+    over = _worst(faults, "flipped_area", FLIPPED)
+    faces = subject.whole[_joined(fault.flipped for fault in over)]
+    yield from found(
         "flipped-faces",
-        message=f"Up to {share(over[0].flipped_area, 1)} of the surface is turned over when a "
-        f"joint turns by {DEGREES:g}°.",
-        advice="Blend the weights there, or bind again.",
         vertices=np.unique(subject.rig.mesh.faces[faces]).astype(np.intp),
         faces=faces,
         **_evidence(subject, over, "flipped_area", FLIPPED, "{} of the surface"),
     )
 
 
-def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    lost = [fault for fault in faults if fault.lost > LOST]
-    lost.sort(key=lambda fault: -fault.lost)
-    if not lost:
-        return
-    evidence = _evidence(subject, lost, "lost", LOST, "{} of the volume")
-    assert subject.rig.weights is not None
-    yield Finding(
-        "lost-volume",
-        message=f"The body loses up to {share(lost[0].lost, 1)} of its volume when a joint turns "
-        f"by {DEGREES:g}°.",
-        advice="Blend the weights over a longer stretch, or bind again.",
-        vertices=np.flatnonzero((subject.rig.weights[:, evidence["joints"]] > MOVES).any(axis=1)),
-        **evidence,
-    )
+def _lost(
+    subject: Subject, faults: list[_PoseFaults], weights: NDArray[np.float64]
+) -> Iterator[Finding]:
+    evidence = _evidence(subject, _worst(faults, "lost", LOST), "lost", LOST, "{} of the volume")
+    follows = (weights[:, evidence["joints"]] > MOVES).any(axis=1)
+    yield from found("lost-volume", vertices=np.flatnonzero(follows), **evidence)
+
+
+def _worst(faults: list[_PoseFaults], size: str, bound: float) -> list[_PoseFaults]:
+    """Return the faults above a bound, the largest first."""
+    over = [fault for fault in faults if getattr(fault, size) > bound]
+    return sorted(over, key=lambda fault: -getattr(fault, size))
+
+
+def _joined(numbers: Iterable[NDArray[np.intp]]) -> NDArray[np.intp]:
+    return np.unique(np.concatenate([np.zeros(0, np.intp), *numbers]))
 
 
 def _evidence(
@@ -193,12 +179,15 @@ def _evidence(
     """Return severity, joints, worst pose, and a line for each joint of its worst pose."""
     best: dict[int, str] = {}
     for fault in faults:
-        name = shown_name(subject.rig.skeleton.names[fault.pose.joint])
-        line = f"{name}: {text.format(share(getattr(fault, size), 1))}, about {fault.pose.axis}"
+        part = text.format(share(getattr(fault, size), 1))
+        line = f"{subject.name(fault.pose.joint)}: {part}, about {fault.pose.axis}"
         best.setdefault(fault.pose.joint, line)
+    most = getattr(faults[0], size) if faults else 0.0
     return {
-        "severity": "warning" if getattr(faults[0], size) > WARNING_FACTOR * bound else "note",
-        "joints": np.unique([fault.pose.joint for fault in faults]),
-        "details": tuple(best.values())[:MAX_LINES],
-        "pose": faults[0].pose,
+        "severity": "warning" if most > WARNING_FACTOR * bound else "note",
+        "joints": np.array(sorted(best), np.intp),
+        "details": list(best.values()),
+        "pose": faults[0].pose if faults else None,
+        "most": share(most, 1),
+        "degrees": DEGREES,
     }

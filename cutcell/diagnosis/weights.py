@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
-from ..runtime.display import shown_name
-from .finding import Finding, count
+from .finding import Finding, count, found
 from .subject import Subject
 
 ROUNDING = 0.01
@@ -32,9 +31,6 @@ DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
 SEAMS = 0.05
 """Part of all places on the surface: if more tear, it is no accident of a few layers."""
-CLEANED = "remove weight that is implausible through the body from these vertices"
-"""How weight that is too far from its joint is repaired."""
-MAX_LINES = 40
 
 
 def check_weights(subject: Subject) -> Iterator[Finding]:
@@ -51,51 +47,17 @@ def check_weights(subject: Subject) -> Iterator[Finding]:
 def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     sums = subject.rig.weight_sums
     sums = weights.sum(axis=1) if sums is None else sums
-    invalid = np.flatnonzero(np.isnan(sums))
-    if len(invalid):
-        yield Finding(
-            "invalid-weights",
-            "error",
-            f"{count(len(invalid), 'vertex', 'have')} weights in the file that are negative or no "
-            "numbers; these count as none.",
-            "Paint or compute them anew.",
-            vertices=invalid,
-            repair="leave these weights out, and scale the others to sum to one",
-        )
+    yield from found("invalid-weights", vertices=np.flatnonzero(np.isnan(sums)))
     empty = np.flatnonzero((weights.sum(axis=1) == 0) & subject.is_used)
-    if len(empty):
-        yield Finding(
-            "unweighted-vertices",
-            "error",
-            f"{count(len(empty), 'vertex', 'have')} no weight: left behind when others move.",
-            "Weight them, or bind again.",
-            vertices=empty,
-            repair="give them the weights of the nearest vertex that has some",
-        )
+    yield from found("unweighted-vertices", vertices=empty)
     off = np.flatnonzero((np.abs(sums - 1) > ROUNDING) & (sums > 0))
-    if len(off):
-        low, high = sums[off].min(), sums[off].max()
-        yield Finding(
-            "unnormalised-weights",
-            "warning",
-            f"In the file, the weights of {count(len(off), 'vertex', 'do')} not sum to one, but to "
-            f"{low:.3g} to {high:.3g}: other programs may scale or shift the skin there.",
-            "Normalise them.",
-            vertices=off,
-            repair="scale them to sum to one",
-        )
+    low, high = sums[off].min(initial=np.inf), sums[off].max(initial=0)
+    yield from found("unnormalised-weights", vertices=off, low=low, high=high)
     influences = (weights > 0).sum(axis=1)
     many = np.flatnonzero(influences > INFLUENCES)
-    if len(many):
-        yield Finding(
-            "many-influences",
-            "note",
-            f"{count(len(many), 'vertex', 'follow')} up to {influences.max()} joints; game engines "
-            f"read {INFLUENCES}.",
-            f"Keep the {INFLUENCES} largest, if an engine is to read it.",
-            vertices=many,
-            repair=f"keep the {INFLUENCES} largest weights of each vertex",
-        )
+    yield from found(
+        "many-influences", vertices=many, most=influences.max(initial=0), limit=INFLUENCES
+    )
 
 
 def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -103,20 +65,14 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     order = np.argsort(place, kind="stable")
     first = order[np.searchsorted(place[order], np.arange(len(subject.points)))]
     differs = np.abs(weights - weights[first[place]]).sum(axis=1) > DIFFERENT
-    torn = np.zeros(len(subject.points), bool)
-    torn[place[differs & subject.is_used]] = True
-    if not torn.any():
-        return
+    torn = np.unique(place[differs & subject.is_used])
     places = len(np.unique(place[subject.is_used]))
-    number = int(torn.sum())
-    yield Finding(
+    yield from found(
         "torn-seams",
-        "warning" if number > SEAMS * places else "note",
-        f"At {count(number, 'place')} of {places:,} vertices lie together that follow different "
-        "joints: the skin tears open there when it moves.",
-        "Give vertices in one place the same weights.",
+        severity="warning" if len(torn) > SEAMS * places else "note",
         vertices=subject.vertices_at(torn),
-        repair="give vertices in one place the mean of their weights",
+        torn=torn,
+        places=places,
     )
 
 
@@ -133,28 +89,17 @@ def _leaked(
     with np.errstate(invalid="ignore"):
         leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR)
     leaked &= np.isfinite(beyond)
-    if not leaked.any():
-        return
     vertex, joint = vertex[leaked], joint[leaked]
-    vertices, joints = np.unique(vertex), np.unique(joint)
-    names = subject.rig.skeleton.names
-    lines = []
-    for j in joints[:MAX_LINES]:
-        of_joint = vertex[joint == j]
-        lines.append(
-            f"{shown_name(names[j])}: up to {weights[of_joint, j].max():.0%} of "
-            f"{count(len(of_joint), 'vertex')} far from it"
-        )
-    yield Finding(
+    joints, number = np.unique(joint, return_counts=True)
+    yield from found(
         "leaked-weights",
-        "warning",
-        f"{count(len(vertices), 'vertex', 'follow')} joints that are far away through the body, "
-        "past nearer ones.",
-        "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again.",
-        repair=CLEANED,
-        vertices=vertices,
+        vertices=np.unique(vertex),
         joints=joints,
-        details=tuple(lines),
+        details=[
+            f"{subject.name(j)}: up to {weights[vertex[joint == j], j].max():.0%} of "
+            f"{count(n, 'vertex')} far from it"
+            for j, n in zip(joints, number.tolist(), strict=True)
+        ],
     )
 
 
