@@ -91,21 +91,20 @@ def _stray_advice(weights: NDArray[np.float64]) -> str:
 def _islands(
     subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
 ) -> Iterator[Finding]:
-    welded, edges = subject.welded, subject.edges.edges
-    first = np.unique(welded, return_index=True)[1]
-    at_welded, area = weights[first], subject.place_areas
+    edges = np.ascontiguousarray(subject.edges.edges.T, np.intp)
+    at_welded, area = np.ascontiguousarray(weights[subject.first].T), subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
     least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
-    for j in np.flatnonzero(measurable & (at_welded.max(axis=0) > NOTICED)).tolist():
-        follows = at_welded[:, j] > NOTICED
+    for j in np.flatnonzero(measurable & (at_welded.max(axis=1) > NOTICED)).tolist():
+        follows = at_welded[j] > NOTICED
         influenced = np.flatnonzero(follows)
         number[influenced] = np.arange(len(influenced))
-        between = number[edges[follows[edges[:, 0]] & follows[edges[:, 1]]]]
-        ones = np.ones(len(between), np.int8)
-        graph = coo_array((ones, tuple(between.T)), shape=(len(influenced),) * 2)
+        between = number[edges[:, follows[edges].all(axis=0)]]
+        ones = np.ones(between.shape[1], np.int8)
+        graph = coo_array((ones, tuple(between)), shape=(len(influenced),) * 2)
         label = connected_components(graph, directed=False)[1]
-        total = np.bincount(label, (at_welded[:, j] * area)[influenced])
+        total = np.bincount(label, (at_welded[j] * area)[influenced])
         # An island is away from a larger region of the same joint on the same component.
         of = subject.component[influenced]
         largest = np.zeros(of.max() + 1)
@@ -114,7 +113,7 @@ def _islands(
         islands, label = influenced[is_island], label[is_island]
         if not len(islands):
             continue
-        through = through_body(subject, distances, first[islands], np.full(len(islands), j))
+        through = through_body(subject, distances, subject.first[islands], np.full(len(islands), j))
         beyond = through - least[islands]
         nearest = np.full(len(total), np.inf)
         np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))
@@ -122,7 +121,7 @@ def _islands(
         islands, label = islands[is_away], label[is_away]
         if not len(islands):
             continue
-        most = float(at_welded[islands, j].max())
+        most = float(at_welded[j, islands].max())
         joints.append(j)
         places.append(islands)
         worst = max(worst, (most, j))

@@ -115,21 +115,15 @@ def _open(subject: Subject) -> Iterator[Finding]:
     is_hole = np.zeros(len(lengths), bool)
     short = np.flatnonzero(lengths == 3)
     corners = np.sort(loop[start[short][:, None] + np.arange(3)], axis=1)
-    is_hole[short] = ~_are_faces(corners, subject.faces)  # a lone triangle has such a rim, too
+    near = subject.faces[np.isin(subject.faces, corners).all(axis=1)]
+    lone = set(map(tuple, np.sort(near, axis=1).tolist()))  # a lone triangle has such a rim, too
+    is_hole[short] = [tuple(triple) not in lone for triple in corners.tolist()]
     is_hole &= is_hole.sum() >= HOLES
     at_hole = np.repeat(is_hole, lengths)
     holes = subject.vertices_at(loop[at_hole])
     yield from found("holes", vertices=holes, holes=is_hole.sum())
     rims = subject.vertices_at(loop[~at_hole])
     yield from found("rims", vertices=rims, rims=(~is_hole).sum(), edges=(~at_hole).sum())
-
-
-def _are_faces(corners: NDArray[np.int64], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Return which triples of vertices, ascending, are corners of a face."""
-    every = np.concatenate([np.sort(faces, axis=1), corners])
-    _, which = np.unique(every, axis=0, return_inverse=True)
-    which = which.ravel()
-    return np.isin(which[len(faces) :], which[: len(faces)])
 
 
 def _non_manifold(subject: Subject) -> Iterator[Finding]:
@@ -142,13 +136,15 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
     faces = np.sort(subject.faces, axis=1)
-    _, first, which = np.unique(faces, axis=0, return_index=True, return_inverse=True)
-    is_first = np.zeros(len(faces), bool)
-    is_first[first] = True
+    order = np.lexsort(faces.T)
+    ordered = faces[order]
+    is_copy = np.append(False, (ordered[1:] == ordered[:-1]).all(axis=1))
+    copies = np.flatnonzero(is_copy)
+    first = np.maximum.accumulate(np.where(is_copy, 0, np.arange(len(order))))[copies]
     # The two sides of a sheet are no duplicates.
-    turn = _rolled(subject.graph.faces[subject.whole])
-    same = (turn == turn[first][which.ravel()]).all(axis=1)
-    yield from found("duplicate-faces", faces=subject.whole[~is_first & same])
+    turn = _rolled(subject.graph.faces[subject.whole[order]])
+    copies = copies[(turn[copies] == turn[first]).all(axis=1)]
+    yield from found("duplicate-faces", faces=np.sort(subject.whole[order[copies]]))
 
 
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -14,7 +14,7 @@ from ..graph import CutCellGraph, build_graph
 from ..graph.winding.boundary import Boundary, boundary_of
 from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
-from ..rig.deform_joints.body import SPACING, Body
+from ..rig.deform_joints.body import Body
 from ..runtime.display import shown_name
 from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
@@ -63,6 +63,11 @@ class Subject:
         return self.graph.vertex_node
 
     @cached_property
+    def first(self) -> NDArray[np.intp]:
+        """The first vertex of the file at each welded vertex, shape (k,)."""
+        return np.unique(self.welded, return_index=True)[1]
+
+    @cached_property
     def points(self) -> NDArray[np.float64]:
         """Welded vertices in the unit cube, shape (k, 3)."""
         return self.graph.nodes[: self.graph.first_point]
@@ -109,9 +114,8 @@ class Subject:
     def place_areas(self) -> NDArray[np.float64]:
         """A third of the areas of the faces around each welded vertex, shape (k,)."""
         corners = self.welded[self.rig.mesh.faces].ravel()
-        area: NDArray[np.float64] = np.zeros(len(self.points))
-        np.add.at(area, corners, np.repeat(self.areas / 3, 3))
-        return area
+        thirds = np.repeat(self.areas / 3, 3)
+        return np.bincount(corners, thirds, len(self.points)).astype(np.float64)
 
     @property
     def vertex_areas(self) -> NDArray[np.float64]:
@@ -136,16 +140,12 @@ class Subject:
     @cached_property
     def joint_distance(self) -> NDArray[np.float64]:
         """How far each joint is from the body, in the unit cube; 0 inside; shape (j,)."""
-        joints = self.body.to_unit(self.rig.skeleton.joints)
-        away = self.body.to_surface(joints)
-        deep = np.flatnonzero(away > SPACING)
-        away[deep[self.body.inside(joints[deep])]] = 0
-        return away
+        return self.body.away(self.body.to_unit(self.rig.skeleton.joints))
 
     @cached_property
     def guess(self) -> DeformJoints:
         """Which joints move skin, by names and places."""
-        return deform_joints(self.rig.mesh, self.rig.skeleton)
+        return deform_joints(self.rig.mesh, self.rig.skeleton, self.body)
 
     def area_share(self, faces: NDArray[np.intp]) -> str:
         """Return the part of the surface that some faces cover, as a text."""

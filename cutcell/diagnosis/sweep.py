@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -60,29 +59,31 @@ class _PoseFaults:
 
 def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaults]:
     skeleton, points, faces = subject.rig.skeleton, subject.points, subject.faces
-    first = np.unique(subject.welded, return_index=True)[1]
     total = weights.sum(axis=1, keepdims=True)
-    shares = (weights / np.where(total > 0, total, 1))[first]
+    shares = (weights / np.where(total > 0, total, 1))[subject.first]
+    followed = skeleton.subtree @ shares.T
     joints = subject.graph.lattice.to_unit(skeleton.joints)
-    edges = subject.edges.edges
+    edges, outward = subject.edges.edges, subject.graph.faces[subject.whole]
+    ends_of, corners_of = (np.ascontiguousarray(rows.T, np.intp) for rows in (edges, faces))
     length = _lengths(points[edges])
     at_first = normals(points[faces])
     area = np.linalg.norm(at_first, axis=1).sum()
-    closed = _closed_faces(subject)
-    volume = _volume(points[closed])
+    is_open = np.zeros(subject.component.max() + 1, bool)
+    is_open[subject.component[subject.boundary.loop]] = True
+    is_closed = ~is_open[subject.component[faces[:, 0]]]
+    volume = _volume(points[outward[is_closed]])
     number = np.zeros(len(points), np.intp)
     turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
     for j, joint in enumerate(joints):
-        moved = shares[:, skeleton.subtree[j]].sum(axis=1)
+        moved = followed[j]
         if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
             continue  # all moves as one, or nothing does
-        low, high = _extremes(moved, edges)
-        bent = np.flatnonzero(high - low > MOVES)
-        low, high = _extremes(moved, faces)
+        bent = np.flatnonzero(np.ptp(moved[ends_of], axis=0) > MOVES)
+        at_corners = moved[corners_of]
+        low, high = at_corners.min(axis=0), at_corners.max(axis=0)
         unlike = np.flatnonzero(high - low > MOVES)
         # Vertices that follow wholly turn about the joint, which changes no volume around it.
-        low, high = _extremes(moved, closed)
-        changing = closed[(high > 0) & (low < ALL)]
+        changing = outward[is_closed & (high > 0) & (low < ALL)]
         before, around, ends = at_first[unlike], faces[unlike], edges[bent]
         follow = moved[around].mean(axis=1)[:, None]
         # Only the vertices of these edges and faces are posed.
@@ -110,23 +111,9 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaul
             )
 
 
-def _extremes(values: NDArray, rows: NDArray) -> tuple[NDArray, NDArray]:
-    """Return the least and the largest value at the vertices of each edge or face."""
-    columns = [values[column] for column in rows.T]
-    return reduce(np.minimum, columns), reduce(np.maximum, columns)
-
-
 def _lengths(ends: NDArray[np.float64]) -> NDArray[np.float64]:
     along = ends[:, 0] - ends[:, 1]
     return np.sqrt(np.einsum("ij,ij->i", along, along))
-
-
-def _closed_faces(subject: Subject) -> NDArray[np.int32]:
-    """Return the faces of components without a rim, facing outward."""
-    is_open = np.zeros(subject.component.max() + 1, np.bool_)
-    is_open[subject.component[subject.boundary.loop]] = True
-    faces = subject.graph.faces[subject.whole]
-    return faces[~is_open[subject.component[faces[:, 0]]]]
 
 
 def _volume(corners: NDArray[np.float64]) -> float:

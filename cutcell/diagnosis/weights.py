@@ -62,10 +62,10 @@ def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
 
 def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     place = subject.welded
-    order = np.argsort(place, kind="stable")
-    first = order[np.searchsorted(place[order], np.arange(len(subject.points)))]
-    differs = np.abs(weights - weights[first[place]]).sum(axis=1) > DIFFERENT
-    torn = np.unique(place[differs & subject.is_used])
+    first = subject.first[place]
+    copies = np.flatnonzero((first != np.arange(len(first))) & subject.is_used)
+    differs = np.abs(weights[copies] - weights[first[copies]]).sum(axis=1) > DIFFERENT
+    torn = np.unique(place[copies[differs]])
     places = len(np.unique(place[subject.is_used]))
     yield from found(
         "torn-seams",

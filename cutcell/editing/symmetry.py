@@ -40,8 +40,14 @@ def find_mirror(rig: Rig) -> Mirror:
     used = np.zeros(len(rig.mesh.vertices), bool)
     used[rig.mesh.faces] = True
     best, share = None, 0.0
+    # Welded vertices: copies of a vertex at a seam must all get the same partner.
+    points, welded = weld(rig.mesh.vertices, WELD_TOLERANCE * mesh_diagonal(rig))
+    tree, within = cKDTree(points), VERTEX_TOLERANCE * mesh_diagonal(rig)
     for axis, position, joint in mirror_planes(rig):
-        vertex = _vertex_partners(rig.mesh.vertices, axis, position, mesh_diagonal(rig))
+        if (joint >= 0).mean() <= share:
+            continue
+        near = tree.query(reflected(points, axis, position), distance_upper_bound=within)[1]
+        vertex = _vertex_partners(near, welded)
         score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
         if score > share:
             best, share = Mirror(axis, position, vertex, joint), score
@@ -109,22 +115,16 @@ def reflected(points: NDArray[np.float64], axis: int, position: float) -> NDArra
     return result
 
 
-def _vertex_partners(
-    vertices: NDArray[np.float64], axis: int, position: float, diagonal: float
-) -> NDArray[np.intp]:
-    """Pair vertices that are each other's nearest after reflection."""
-    # Welded vertices: copies of a vertex at a seam must all get the same partner.
-    points, welded = weld(vertices, WELD_TOLERANCE * diagonal)
-    distance, near = cKDTree(points).query(
-        reflected(points, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
-    )
-    near[np.isinf(distance)] = -1
-    mutual = (near >= 0) & (near[near] == np.arange(len(near)))
-    first = np.zeros(len(points), np.intp)
-    first[welded[::-1]] = np.arange(len(welded))[::-1]
-    partner = np.where(mutual, first[near], -1)[welded]
-    on_plane = (near == np.arange(len(near)))[welded]
-    return np.where(on_plane, np.arange(len(welded)), partner)
+def _vertex_partners(near: NDArray[np.intp], welded: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Pair vertices whose mirror images are nearest to each other.
+
+    Shapes: near (k,), the place nearest to each one's image, k for none; welded (n,).
+    """
+    every = np.arange(len(near))
+    back = np.append(near, len(near))[near]
+    first = np.unique(welded, return_index=True)[1]
+    partner = np.where(back == every, np.append(first, -1)[near], -1)[welded]
+    return np.where((near == every)[welded], np.arange(len(welded)), partner)
 
 
 def _joint_partners(

@@ -52,6 +52,13 @@ class Body:
             winding[first : first + step] = covered.sum(axis=1)
         return np.abs(winding) > INSIDE * 4 * np.pi
 
+    def away(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Measure from points (p, 3) to the body, 0 inside of it."""
+        away = self.to_surface(points)
+        deep = np.flatnonzero(away > SPACING)
+        away[deep[self.inside(points[deep])]] = 0.0
+        return away
+
     def encloses(self, point: NDArray[np.float64]) -> bool:
         """Return whether the surface encloses a point (3,), however close it is."""
         a, b, c = np.moveaxis(self._corners - point, 1, 0)

@@ -66,7 +66,7 @@ class DeformJoints:
     reason: tuple[str, ...]
 
 
-def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
+def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = None) -> DeformJoints:
     """Classify joints as bones, controls, end markers, sockets or roots, without weights.
 
     Names decide where riggers and exporters have words for it; else where a joint lies: what is
@@ -78,6 +78,8 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
     mesh : TriangleMesh
     skeleton : Skeleton
         Its own `deform` is not looked at.
+    body : Body, optional
+        Of the mesh, if it has been sampled already.
 
     Returns
     -------
@@ -90,7 +92,7 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
         The skeleton has no joints.
     """
     skeleton.require_joints()
-    guess = _Guess(mesh, skeleton)
+    guess = _Guess(mesh, skeleton, body or Body(mesh))
     guess.by_name()
     if guess.is_body:
         guess.by_place()
@@ -100,19 +102,17 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
 
 
 class _Guess:
-    def __init__(self, mesh: TriangleMesh, skeleton: Skeleton) -> None:
+    def __init__(self, mesh: TriangleMesh, skeleton: Skeleton, body: Body) -> None:
         self.names, self.parents = skeleton.names, skeleton.parents
         self.children = skeleton.children
         self.leaves_first = np.argsort(-skeleton.depth, kind="stable").tolist()
-        self.body = Body(mesh)
+        self.body = body
         self.joints = self.body.to_unit(skeleton.joints)
         self.vertices = self.body.to_unit(mesh.vertices[np.unique(mesh.faces)])
         self.distance = np.zeros(len(self.joints))
         self.is_body = False
         if len(self.joints) <= MAX_JOINTS:
-            self.distance = self.body.to_surface(self.joints)
-            deep = np.flatnonzero(self.distance > SPACING)
-            self.distance[deep[self.body.inside(self.joints[deep])]] = 0.0
+            self.distance = self.body.away(self.joints)
             self.is_body = bool((self.distance <= OUTSIDE).mean() >= ENOUGH_NEAR)
         self.deform = np.ones(len(self.joints), bool)
         self.reason = [BONE] * len(self.joints)
