@@ -4,8 +4,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.diagnosis.finding import count
 from cutcell.editing.corrections import Corrections
+from cutcell.runtime.display import count
 
 from ..commands import correct
 from ..commands.session import Session

@@ -8,12 +8,12 @@ import numpy as np
 import panel_material_ui as pmui
 from numpy.typing import NDArray
 
-from cutcell.diagnosis.finding import count
 from cutcell.editing.binding_warnings import SAME
 from cutcell.editing.corrections import Corrections
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
+from cutcell.runtime.display import count
 
 from ..commands import correct
 from ..commands import export as actions

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from cutcell.diagnosis import Finding
-from cutcell.diagnosis.finding import count
+from cutcell.runtime.display import count
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.finding_scene import finding_marks, finding_pose
 from cutcell_viewers.palette import BODY, MARK, Color

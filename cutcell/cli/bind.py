@@ -27,7 +27,7 @@ from .options import (
     chosen_method,
     with_method,
 )
-from .report import report_rows
+from .report import described, report_rows
 
 if TYPE_CHECKING:
     from ..binding import Binding
@@ -103,14 +103,10 @@ def bind(
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
     from ..templates.fit import check_template
-    from . import summary
+    from .summary import summarize_weights
 
     how = chosen_method(options)
-    touches: dict[str, Any] = {
-        "smoothing": smoothing,
-        "symmetric": symmetric,
-        "locked": lock or [],
-    }
+    touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
     corrected = None if corrections is None else Corrections.load(corrections)
     fits = None if template is None else check_template(template)
     check_output(out)
@@ -131,11 +127,8 @@ def bind(
             loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
         )
     dropped: list[str] = []
-    if (
-        options["max_influences"] is None
-        and how.max_influences is None
-        and out.suffix.lower() in GLTF
-    ):
+    is_open = options["max_influences"] is None and how.max_influences is None
+    if is_open and out.suffix.lower() in GLTF:
         binding, dropped = _limited(loaded, binding, corrected, touches)
         how = how.with_options(max_influences=GLTF_INFLUENCES)
     warnings = [*loaded.warnings, *binding.warnings, *dropped]
@@ -149,13 +142,8 @@ def bind(
         "parameters": {**asdict(how), **touches},
         "corrections": None if corrections is None else str(corrections),
         "template": template,
-        "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
-        "meshes": summary.summarize_parts(loaded),
-        "skeleton": summary.summarize_skeleton(loaded.skeleton),
-        "graph": summary.summarize_graph(binding.graph),
-        "fallback": summary.summarize_fallback(binding.distances),
-        "influences": summary.summarize_weights(binding.weights),
-        "seconds": {name: round(value, 4) for name, value in binding.seconds.items()},
+        **described(loaded, binding.graph, binding.distances, binding.seconds),
+        "influences": summarize_weights(binding.weights),
         "warnings": warnings,
     }
     print_result(document, f"{rig.name} -> {out}", report_rows(document), json, quiet)

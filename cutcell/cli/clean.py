@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..runtime.display import count
 from .console import for_people, print_result, progress_bars
 from .options import Json, Quiet, Resolution, RigFile, SkeletonFile
 
@@ -67,16 +68,7 @@ def clean(
         "changed": len(cleaned.vertices),
         "bound": len(cleaned.bound),
         "share": cleaned.share,
-        "joints": [
-            {
-                "joint": loss.joint,
-                "name": loss.name,
-                "share": loss.share,
-                "largest": loss.largest,
-                "vertices": loss.vertices.tolist(),
-            }
-            for loss in cleaned.losses
-        ],
+        "joints": [{**vars(loss), "vertices": loss.vertices.tolist()} for loss in cleaned.losses],
         "warnings": warnings,
     }
     print_result(document, f"{rig.name} -> {out}", _rows(document, cleaned), json, quiet)
@@ -92,10 +84,9 @@ def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str
     if document["bound"]:
         yield "bound again", f"{document['bound']:,} that lost more than half of their weight"
     for loss in cleaned.losses[:FEW]:
-        vertices = "vertex" if len(loss.vertices) == 1 else "vertices"
         yield (
             loss.name,
-            f"{loss.share:.1%} of its weight, on {len(loss.vertices):,} {vertices}, "
+            f"{loss.share:.1%} of its weight, on {count(len(loss.vertices), 'vertex')}, "
             f"up to {loss.largest:.0%} of one",
         )
     if len(cleaned.losses) > FEW:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
 from ..errors import CutcellError
-from ..runtime.display import printable
+from ..runtime.display import count, printable
 from .console import WRONG_INPUT, for_people, print_json, print_warnings, progress_bars
 from .options import FILES, Json, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
-    from ..diagnosis import Diagnosis, Finding, Repaired
+    from ..diagnosis import Finding
 
 EPILOG = """Examples:
 
@@ -26,6 +26,7 @@ EPILOG = """Examples:
 - `cutcell diagnose character.glb --json | jq '.findings[].code'`  (for a script)"""
 
 COLORS = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
+INDENT = " " * 8
 FEW = 5
 """Lines of details that are printed of one finding; `--json` has them all."""
 
@@ -63,7 +64,12 @@ def diagnose(
     except CutcellError as error:
         if not rig.is_file():
             raise
-        _print_unreadable(rig, unreadable(error), json)
+        finding = unreadable(error)
+        if json:
+            counts = {"error": 1, "warning": 0, "note": 0}
+            print_json({"input": str(rig), "counts": counts, "findings": [finding.to_dict()]})
+        else:
+            _print_findings(rig.name, (finding,))
         raise typer.Exit(WRONG_INPUT) from None
     with progress_bars(quiet=json) as progress:
         before = examine(loaded, resolution, progress=progress)
@@ -73,88 +79,53 @@ def diagnose(
             check_output(fix, repaired.rig)
             after = examine(repaired.rig, resolution, progress=progress)
     warnings = list(loaded.warnings)
-    if repaired is not None and fix is not None:
+    repair = None
+    if fix is not None and repaired is not None and after is not None:
         save(fix, repaired.rig)
         warnings += saving_notes(fix, repaired.rig)
+        codes = [finding.code for finding in repaired.repaired]
+        repair = {
+            "output": str(fix),
+            "codes": codes,
+            "done": list(repaired.done),
+            **after.to_dict(),
+        }
     if json:
-        print_json(
-            {
-                "input": str(rig),
-                "resolution": resolution,
-                **before.to_dict(),
-                "repair": _repair(fix, repaired, after),
-                "warnings": warnings,
-            }
-        )
+        document = {"input": str(rig), "resolution": resolution, **before.to_dict()}
+        print_json({**document, "repair": repair, "warnings": warnings})
         return
     print_warnings(warnings)
-    _print(rig.name, before)
-    if fix is not None:
-        _print_repair(fix, before, repaired, after)
-
-
-def _repair(
-    fix: Path | None, repaired: Repaired | None, after: Diagnosis | None
-) -> dict[str, Any] | None:
-    """Return the repair as plain data; None without one."""
-    if repaired is None or after is None:
-        return None
-    codes = [finding.code for finding in repaired.repaired]
-    return {"output": str(fix), "codes": codes, "done": list(repaired.done), **after.to_dict()}
-
-
-def _print_unreadable(path: Path, finding: Finding, json: bool) -> None:
-    if json:
-        counts = {"error": 1, "warning": 0, "note": 0}
-        print_json({"input": str(path), "counts": counts, "findings": [finding.to_dict()]})
-        return
-    _print_findings(path.name, (finding,))
-
-
-def _print(name: str, diagnosis: Diagnosis) -> None:
-    if diagnosis.findings:
-        _print_findings(f"{name}: {_counts(diagnosis.counts)}", diagnosis.findings)
-    else:
-        _line(Text(f"{printable(name)}: nothing found", "bold"))
+    _print_findings(f"{rig.name}: {_counts(before.counts)}", before.findings)
+    if fix is not None and repair is None:
+        _line(f"nothing to repair: {fix.name} was not written")
+    elif fix is not None and repair is not None:
+        _line(f"saved {fix.name}, repaired:", "bold")
+        for text in repair["done"]:
+            _line(INDENT + text)
+        _line(f"before: {_counts(before.counts)}; after: {_counts(repair['counts'])}")
 
 
 def _print_findings(heading: str, findings: tuple[Finding, ...]) -> None:
-    _line(Text(printable(heading), "bold"))
+    _line(heading, "bold")
     for finding in findings:
-        _line(
-            Text.assemble(
-                (f"{finding.severity:<8}", COLORS[finding.severity]), (finding.title, "bold")
-            )
-        )
+        label = (f"{finding.severity:<8}", COLORS[finding.severity])
+        _line(Text.assemble(label, (finding.title, "bold")))
         more = len(finding.details) - FEW
         for text in (finding.message, *finding.details[:FEW]):
-            _line(Text(f"        {printable(text)}"))
+            _line(INDENT + text)
         if more > 0:
-            _line(Text(f"        and {more} more"))
-        _line(Text(f"        {printable(finding.advice)}", "dim"))
+            _line(f"{INDENT}and {more} more")
+        _line(INDENT + finding.advice, "dim")
         if finding.repair:
-            _line(Text(f"        --fix: {finding.repair}", "dim"))
-
-
-def _print_repair(
-    fix: Path, before: Diagnosis, repaired: Repaired | None, after: Diagnosis | None
-) -> None:
-    if repaired is None or after is None:
-        _line(Text(f"nothing to repair: {printable(fix.name)} was not written"))
-        return
-    name = printable(fix.name)
-    _line(Text(f"saved {name}, repaired:", "bold"))
-    for text in repaired.done:
-        _line(Text(f"        {printable(text)}"))
-    _line(Text(f"before: {_counts(before.counts)}; after: {_counts(after.counts)}"))
+            _line(f"{INDENT}--fix: {finding.repair}", "dim")
 
 
 def _counts(counts: dict[str, int]) -> str:
     """Return the number of findings: "1 error, 2 notes"."""
-    counted = [f"{n} {severity}{'s' * (n != 1)}" for severity, n in counts.items() if n]
-    return ", ".join(counted) or "nothing found"
+    return ", ".join(count(n, severity) for severity, n in counts.items() if n) or "nothing found"
 
 
-def _line(text: Text) -> None:
+def _line(text: str | Text, style: str = "") -> None:
     # Soft wrapping leaves lines whole, so that a sentence can be searched for and copied.
-    Console(highlight=False, soft_wrap=True).print(text)
+    line = Text(printable(text), style) if isinstance(text, str) else text
+    Console(highlight=False, soft_wrap=True).print(line)

@@ -16,7 +16,7 @@ from .options import (
     chosen_method,
     with_method,
 )
-from .report import report_rows
+from .report import described, report_rows
 
 EPILOG = """Examples:
 
@@ -51,7 +51,6 @@ def graph(
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
     from ..weights.context import Context, run
-    from . import summary
 
     how = chosen_method(options)
     loaded = load(rig, skeleton=skeleton)
@@ -60,17 +59,11 @@ def graph(
     steps = binding_steps(loaded, how)[: 2 if len(loaded.skeleton.joints) else 1]
     with progress_bars(quiet=json) as progress:
         context = run(steps, Context(how, progress=progress))
-    built, distances = context.graph, context.distances
     document = {
         "input": str(rig),
         "method": options["method"],
         "parameters": {name: value for name, value in asdict(how).items() if name in GRAPH_OPTIONS},
-        "mesh": summary.summarize_mesh(loaded.mesh, built),
-        "meshes": summary.summarize_parts(loaded),
-        "skeleton": distances and summary.summarize_skeleton(loaded.skeleton),
-        "graph": summary.summarize_graph(built),
-        "fallback": distances and summary.summarize_fallback(distances),
-        "seconds": {name: round(value, 4) for name, value in context.seconds.items()},
+        **described(loaded, context.graph, context.distances, context.seconds),
         "warnings": list(loaded.warnings),
     }
     print_result(document, rig.name, report_rows(document), json)

@@ -4,10 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from ..runtime.display import count
+
+if TYPE_CHECKING:
+    from ..geodesics import BoneDistances
+    from ..graph import CutCellGraph
+    from ..rig import Rig
 
 MAX_NAMES = 12
 """Maximum number of names in one row; `--json` lists all."""
+
+
+def described(
+    rig: Rig, graph: CutCellGraph, distances: BoneDistances | None, seconds: Mapping[str, float]
+) -> dict[str, Any]:
+    """Return a rig, its graph and distances in numbers, as `report_rows` and `--json` list them."""
+    from . import summary
+
+    return {
+        "mesh": summary.summarize_mesh(rig.mesh, graph),
+        "meshes": summary.summarize_parts(rig),
+        "skeleton": distances and summary.summarize_skeleton(rig.skeleton),
+        "graph": summary.summarize_graph(graph),
+        "fallback": distances and summary.summarize_fallback(distances),
+        "seconds": {name: round(value, 4) for name, value in seconds.items()},
+    }
 
 
 def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -15,31 +38,28 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
     yield (
         "mesh",
-        f"{_count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} welded), "
-        f"{_count(mesh['triangles'], 'triangle')}, {_count(mesh['components'], 'component')}",
+        f"{count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} welded), "
+        f"{count(mesh['triangles'], 'triangle')}, {count(mesh['components'], 'component')}",
     )
     yield from _part_rows(document["meshes"])
     if mesh["closed"]:
         yield "surface", "closed"
     else:
-        yield "surface", f"open: {_count(mesh['open_edges'], 'edge')} with one triangle"
+        yield "surface", f"open: {count(mesh['open_edges'], 'edge')} with one triangle"
     if skeleton:
-        roots = _count(skeleton["roots"], "root")
         yield (
             "skeleton",
-            f"{_count(skeleton['joints'], 'joint')}, {skeleton['deform']:,} may "
-            f"carry weight; {roots}",
+            f"{count(skeleton['joints'], 'joint')}, {skeleton['deform']:,} may carry weight; "
+            f"{count(skeleton['roots'], 'root')}",
         )
     yield "resolution", f"{graph['resolution']}"
     for what in ("nodes", "edges"):
-        kinds = ", ".join(
-            f"{graph[what][kind]:,} {kind}" for kind in ("mesh", "interior", "surface")
-        )
+        kinds = ", ".join(f"{graph[what][k]:,} {k}" for k in ("mesh", "interior", "surface"))
         yield what, f"{graph[what]['total']:,}: {kinds}"
     yield (
         "connected",
         f"{graph['largest_component']:.1%} of the nodes; "
-        f"{_count(graph['components'], 'component')} in all",
+        f"{count(graph['components'], 'component')} in all",
     )
     if document["fallback"]:
         yield "not reached", _fallback(document["fallback"])
@@ -54,16 +74,12 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def _part_rows(meshes: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[tuple[str, str]]:
     parts = meshes["parts"]
     if len(parts) > 1 or parts[0]["hidden"]:
-        yield "parts", _named(parts, [_hidden(part) for part in parts])
+        yield "parts", _named(parts, ["hidden" * part["hidden"] for part in parts])
     if meshes["attachments"]:
         notes = [f"on {a['joint']}" + (", hidden" * a["hidden"]) for a in meshes["attachments"]]
         yield "attachments", _named(meshes["attachments"], notes)
     if meshes["left_out"]:
         yield "left out", _named(meshes["left_out"], [out["why"] for out in meshes["left_out"]])
-
-
-def _hidden(part: Mapping[str, Any]) -> str:
-    return "hidden" if part["hidden"] else ""
 
 
 def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
@@ -78,10 +94,5 @@ def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
 def _fallback(fallback: Mapping[str, Any]) -> str:
     if not fallback["vertices"]:
         return "none: a path inside leads from a bone to every vertex"
-    reasons = "; ".join(f"{count:,} {reason}" for reason, count in fallback["reasons"].items())
+    reasons = "; ".join(f"{number:,} {reason}" for reason, number in fallback["reasons"].items())
     return f"{fallback['share']:.1%} of the vertices ({reasons})"
-
-
-def _count(number: int, noun: str) -> str:
-    plural = {"vertex": "vertices"}.get(noun, noun + "s")
-    return f"{number:,} {noun if number == 1 else plural}"

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..runtime.display import count
+
 SEVERITIES = ("error", "warning", "note")
 """The most severe first. Error: it breaks a binding or another program. Warning: most likely a
 fault. Note: information."""
@@ -358,15 +360,3 @@ def share(part: float, whole: float) -> str:
     if 0 < ratio < 0.001:
         return "under 0.1%"
     return f"{ratio:.0%}" if ratio >= 0.1 else f"{ratio:.1%}"
-
-
-def count(number: int, one: str, verb: str = "") -> str:
-    """Return a number with its noun, and a verb if one follows: "1 face is", "3,109 faces are"."""
-    noun = one if number == 1 else _MANY.get(one, one + "s")
-    if verb and number == 1:
-        verb = _ONE.get(verb, verb + "s")
-    return f"{number:,} {noun} {verb}".rstrip()
-
-
-_MANY = {"vertex": "vertices"}
-_ONE = {"are": "is", "have": "has", "carry": "carries", "do": "does"}

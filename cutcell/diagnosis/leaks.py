@@ -13,7 +13,8 @@ from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
-from .finding import Finding, Pose, count, found, share
+from ..runtime.display import count
+from .finding import Finding, Pose, found, share
 from .subject import Subject
 from .weights import NOTICED, through_body
 

@@ -11,13 +11,13 @@ from scipy.spatial import cKDTree
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..geometry.laplacian import vertex_areas, vertex_normals
-from ..geometry.segments import distance_to_segment
 from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
+from ..runtime.display import count
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
-from .finding import Finding, count, found, share
-from .subject import Subject
+from .finding import Finding, found, share
+from .subject import Subject, bones_distance
 
 FAR = 1.5
 """Cells: skin that is farther from every lattice point inside has none below it."""
@@ -72,7 +72,9 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     part, total = areas[thin].sum(), areas.sum()
     if part < THIN * total and thin.sum() < FEW * used.sum():
         return
-    needed = ENOUGH * resolution / _median(depth[depth > 0], areas[far][depth > 0])
+    deep = depth > 0
+    typical = np.quantile(depth[deep], 0.5, weights=areas[far][deep], method="inverted_cdf")
+    needed = ENOUGH * resolution / typical
     enough = int(np.ceil(needed / 16) * 16)
     yield from found(
         "thin-parts",
@@ -83,13 +85,6 @@ def _thin(subject: Subject) -> Iterator[Finding]:
         if enough > resolution
         else "Paths run over their skin, which is nearly equivalent.",
     )
-
-
-def _median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
-    """Return the median of values that count by their weights."""
-    order = np.argsort(values, kind="stable")
-    total = np.cumsum(weights[order])
-    return float(values[order[np.searchsorted(total, total[-1] / 2)]])
 
 
 def _depths(
@@ -227,13 +222,7 @@ def _much_nearer(
     for j in np.unique(bones.joint):
         if allowed is not None and not allowed[part, j].all():
             continue
-        away = np.min(
-            [
-                distance_to_segment(points, bones.start[b], bones.end[b])
-                for b in np.flatnonzero(bones.joint == j)
-            ],
-            axis=0,
-        )
+        away = bones_distance(bones, int(j), points)
         if j == joint:
             followed = away
         if np.median(away) < least:

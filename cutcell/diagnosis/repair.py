@@ -20,12 +20,14 @@ from .leaks import check_leaks
 from .subject import Subject
 from .weights import INFLUENCES, check_weights
 
-TURNED = ("inverted-faces",)
+Weights = NDArray[np.float64]
+
+TURNED = "inverted-faces"
+FACES = {TURNED, "duplicate-faces", "degenerate-faces"}
 NOTHING = "unchanged, because this repair does not help"
 ROUNDING = 1e-9
 MIN_GAIN = 0.01
 """Part of its severity that a finding must lose for its repair to have helped."""
-DROPPED = ("duplicate-faces", "degenerate-faces")
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,21 +53,21 @@ class Repaired:
 
 def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
     """Repair findings of a rig."""
-    before, by_code = rig, {finding.code: finding for finding in findings}
+    by_code = {finding.code: finding for finding in findings}
+    turned, dropped = np.zeros((2, len(rig.mesh.faces)), bool)
     in_vain = []
     for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
         if code in by_code and rig.weights is not None:
-            weights = _allowed(rig, mend(rig, by_code[code]))
+            vertices = by_code[code].vertices
+            weights = _allowed(rig, mend(rig, rig.weights.copy(), vertices))
             if mend is not _as_they_are and not _helps(rig, weights, by_code[code]):
                 in_vain.append(code)
                 continue
             rig = rig.with_weights(weights)
             if mend is _as_they_are:
-                rig = with_rescaled(rig, by_code[code].vertices)
-    turned, dropped = (
-        _mask(len(before.mesh.faces), [by_code[code].faces for code in codes if code in by_code])
-        for codes in (TURNED, DROPPED)
-    )
+                rig = with_rescaled(rig, vertices)
+    for code in FACES & by_code.keys():
+        (turned if code == TURNED else dropped)[by_code[code].faces] = True
     if turned.any() or dropped.any():
         rig = with_faces(rig, ~dropped, turned)
     done = tuple(
@@ -100,13 +102,6 @@ def _excess(subject: Subject, code: str) -> float:
     return 0.0
 
 
-def _mask(count: int, which: list[NDArray[np.intp]]) -> NDArray[np.bool_]:
-    mask = np.zeros(count, bool)
-    for rows in which:
-        mask[rows] = True
-    return mask
-
-
 def _allowed(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return weights on joints that the file can store, scaled to sum to one."""
     if rig.allowed is not None:
@@ -116,44 +111,38 @@ def _allowed(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0)
 
 
-def _as_they_are(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+def _as_they_are(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
     """Return the weights: loading drops invalid ones, and sums are scaled afterwards."""
-    return _weights(rig)
-
-
-def _filled(rig: Rig, finding: Finding) -> NDArray[np.float64]:
-    """Give vertices without weight those of the nearest vertex with some."""
-    weights = _weights(rig).copy()
-    having = np.flatnonzero(weights.any(axis=1))
-    if len(having):
-        vertices = rig.mesh.vertices
-        nearest = cKDTree(vertices[having]).query(vertices[finding.vertices])[1]
-        weights[finding.vertices] = weights[having[nearest]]
     return weights
 
 
-def _together(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+def _filled(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
+    """Give vertices without weight those of the nearest vertex with some."""
+    having = np.flatnonzero(weights.any(axis=1))
+    if len(having):
+        places = rig.mesh.vertices
+        weights[vertices] = weights[having[cKDTree(places[having]).query(places[vertices])[1]]]
+    return weights
+
+
+def _together(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
     """Give vertices in one place the mean of their weights."""
-    weights = _weights(rig).copy()
+    most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
     _, place = weld(Lattice.around(rig.mesh, 2).to_unit(rig.mesh.vertices))
-    group = place[finding.vertices]
-    places, which = np.unique(group, return_inverse=True)
+    places, which = np.unique(place[vertices], return_inverse=True)
     sums = np.zeros((len(places), weights.shape[1]))
-    np.add.at(sums, which, weights[finding.vertices])
-    weights[finding.vertices] = (sums / np.bincount(which)[:, None])[which]
-    most = max(INFLUENCES, int((_weights(rig) > 0).sum(axis=1).max()))
+    np.add.at(sums, which, weights[vertices])
+    weights[vertices] = (sums / np.bincount(which)[:, None])[which]
     return prune(weights, most, 0.0, np.arange(weights.shape[1]))
 
 
-def _pruned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
-    weights = _weights(rig)
+def _pruned(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
     return prune(weights, INFLUENCES, 0.0, np.arange(weights.shape[1]))
 
 
-def _cleaned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+def _cleaned(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
     """Remove implausible weights from the vertices of a finding."""
-    weights = _weights(rig).copy()
-    weights[finding.vertices] = clean(rig).weights[finding.vertices]
+    weights[vertices] = clean(rig).weights[vertices]
     return weights
 
 
@@ -162,7 +151,7 @@ def _weights(rig: Rig) -> NDArray[np.float64]:
     return rig.weights
 
 
-WEIGHTS: dict[str, Callable[[Rig, Finding], NDArray[np.float64]]] = {
+WEIGHTS: dict[str, Callable[[Rig, Weights, NDArray[np.intp]], Weights]] = {
     "invalid-weights": _as_they_are,
     "unweighted-vertices": _filled,
     "unnormalised-weights": _as_they_are,

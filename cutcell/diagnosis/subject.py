@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics import BoneDistances, bone_distances
+from ..geodesics.bones import Bones
 from ..geometry.edges import MeshEdges, find_edges
+from ..geometry.segments import distance_to_segment
 from ..geometry.triangles import areas
 from ..graph import CutCellGraph, build_graph
 from ..graph.winding.boundary import Boundary, boundary_of
@@ -19,6 +21,14 @@ from ..runtime.display import shown_name
 from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
 from .finding import share
+
+
+def bones_distance(bones: Bones, joint: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Measure from points (p, 3) straight to the nearest bone of a joint."""
+    of_joint = np.flatnonzero(bones.joint == joint)
+    return np.min(
+        [distance_to_segment(points, bones.start[b], bones.end[b]) for b in of_joint], axis=0
+    )
 
 
 class Subject:

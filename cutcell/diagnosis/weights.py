@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
-from ..geometry.segments import distance_to_segment
-from .finding import Finding, count, found
-from .subject import Subject
+from ..runtime.display import count
+from .finding import Finding, found
+from .subject import Subject, bones_distance
 
 ROUNDING = 0.01
 """By how much weights may miss one: three weights of eight bits miss it by 0.006."""
@@ -84,7 +84,9 @@ def _leaked(
     vertex, joint = vertex[is_reached], joint[is_reached]
     nearest = distances.least
     through = through_body(subject, distances, vertex, joint)
-    straight = _straight(subject, distances, vertex, joint)
+    points, straight = subject.points[subject.welded[vertex]], np.empty(len(vertex))
+    for j in np.unique(joint):
+        straight[joint == j] = bones_distance(distances.bones, j, points[joint == j])
     beyond = through - nearest[vertex]
     with np.errstate(invalid="ignore"):
         leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR)
@@ -125,17 +127,3 @@ def through_body(
         )
         through = subset.all_joints(subject.progress)[joint, vertex]
     return through
-
-
-def _straight(
-    subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
-) -> NDArray[np.float64]:
-    """Return the straight distances of vertices from the bones of joints."""
-    bones, points = distances.bones, subject.points[subject.welded]
-    least = np.full(len(vertex), np.inf)
-    for j in np.unique(joint):
-        of_joint = np.flatnonzero(joint == j)
-        for b in np.flatnonzero(bones.joint == j):
-            away = distance_to_segment(points[vertex[of_joint]], bones.start[b], bones.end[b])
-            least[of_joint] = np.minimum(least[of_joint], away)
-    return least

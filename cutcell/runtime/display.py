@@ -72,3 +72,15 @@ def json_escape(text: str) -> str:
     """Return characters as the escapes that strings of JSON have for them."""
     units = text.encode("utf-16-be", "surrogatepass").hex()
     return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4))
+
+
+def count(number: int, one: str, verb: str = "") -> str:
+    """Return a number with its noun, and a verb if one follows: "1 face is", "3,109 faces are"."""
+    noun = one if number == 1 else _MANY.get(one, one + "s")
+    if verb and number == 1:
+        verb = _ONE.get(verb, verb + "s")
+    return f"{number:,} {noun} {verb}".rstrip()
+
+
+_MANY = {"vertex": "vertices"}
+_ONE = {"are": "is", "have": "has", "carry": "carries", "do": "does"}

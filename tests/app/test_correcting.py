@@ -9,9 +9,9 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
-from cutcell.diagnosis.finding import count
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
+from cutcell.runtime.display import count
 from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh

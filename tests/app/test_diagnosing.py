@@ -195,7 +195,7 @@ def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypat
     state, before = spoiled.state, spoiled.state.rig
     look_at(spoiled, "unweighted-vertices")
     assert {"Repair", "Repair all 2 findings"} <= labels(spoiled).keys()
-    monkeypatch.setitem(WEIGHTS, "unweighted-vertices", lambda rig, finding: rig.weights)
+    monkeypatch.setitem(WEIGHTS, "unweighted-vertices", lambda rig, weights, vertices: weights)
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.repair is not None)
     assert state.rig is before
