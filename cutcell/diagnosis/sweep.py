@@ -39,7 +39,7 @@ def check_sweep(subject: Subject) -> Iterator[Finding]:
     weights = subject.rig.weights
     if weights is None or not weights.any():
         return
-    faults = sorted(_poses(subject, weights), key=lambda fault: -fault.longest)
+    faults = list(_poses(subject, weights))
     yield from _stretched(subject, faults)
     yield from _flipped(subject, faults)
     yield from _lost(subject, faults, weights)
@@ -63,15 +63,17 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaul
     shares = (weights / np.where(total > 0, total, 1))[subject.first]
     followed = skeleton.subtree @ shares.T
     joints = subject.graph.lattice.to_unit(skeleton.joints)
-    edges, outward = subject.edges.edges, subject.graph.faces[subject.whole]
+    edges = subject.edges.edges
     ends_of, corners_of = (np.ascontiguousarray(rows.T, np.intp) for rows in (edges, faces))
     length = _lengths(points[edges])
     at_first = normals(points[faces])
     area = np.linalg.norm(at_first, axis=1).sum()
     is_open = np.zeros(subject.component.max() + 1, bool)
     is_open[subject.component[subject.boundary.loop]] = True
-    is_closed = ~is_open[subject.component[faces[:, 0]]]
-    volume = _volume(points[outward[is_closed]])
+    # Faces of open components enclose nothing, inverted ones count as flipped.
+    sign = np.where(subject.graph.inverted[subject.whole], -1.0, 1.0)
+    sign[is_open[subject.component[faces[:, 0]]]] = 0.0
+    volume = np.einsum("i,ij,ij->", sign, points[faces[:, 0]], at_first)
     number = np.zeros(len(points), np.intp)
     turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
     for j, joint in enumerate(joints):
@@ -81,44 +83,40 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaul
         bent = np.flatnonzero(np.ptp(moved[ends_of], axis=0) > MOVES)
         at_corners = moved[corners_of]
         low, high = at_corners.min(axis=0), at_corners.max(axis=0)
-        unlike = np.flatnonzero(high - low > MOVES)
         # Vertices that follow wholly turn about the joint, which changes no volume around it.
-        changing = outward[is_closed & (high > 0) & (low < ALL)]
-        before, around, ends = at_first[unlike], faces[unlike], edges[bent]
-        follow = moved[around].mean(axis=1)[:, None]
-        # Only the vertices of these edges and faces are posed.
+        changing = np.flatnonzero((high > 0) & (low < ALL))
+        is_unlike = (high - low)[changing] > MOVES
+        before, around, ends = at_first[changing], faces[changing], edges[bent]
+        follow = at_corners[:, changing].mean(axis=0)[:, None]
+        # Only the vertices of these faces are posed; bent edges are theirs.
         is_posed = np.zeros(len(points), bool)
-        for rows in (ends, around, changing):
-            is_posed[rows] = True
+        is_posed[around] = True
         posed_vertices = np.flatnonzero(is_posed)
         number[posed_vertices] = np.arange(len(posed_vertices))
-        local_ends, local_faces, local_changing = number[ends], number[around], number[changing]
+        local_ends, local_faces = number[ends], number[around]
         arms, by = points[posed_vertices] - joint, moved[posed_vertices, None]
-        enclosed = _volume(arms[local_changing])
+        enclosed = np.einsum("i,ij,ij->", sign[changing], arms[local_faces[:, 0]], before)
         for axis, degrees, turn in turns:
             posed = arms + by * (arms @ (turn - np.eye(3)).T)
             longer = _lengths(posed[local_ends]) - length[bent]
             torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * length[bent])
             expected = before + follow * (before @ turn.T - before)
-            over = np.einsum("ij,ij->i", normals(posed[local_faces]), expected) < 0
+            after = normals(posed[local_faces])
+            over = is_unlike & (np.einsum("ij,ij->i", after, expected) < 0)
+            left = np.einsum("i,ij,ij->", sign[changing], posed[local_faces[:, 0]], after)
             yield _PoseFaults(
                 Pose(j, axis, degrees),
                 np.unique(ends[torn]),
                 float(longer[torn].max(initial=0)),
-                unlike[over],
+                changing[over],
                 float(np.linalg.norm(before[over], axis=1).sum() / area),
-                (enclosed - _volume(posed[local_changing])) / volume if volume > 0 else 0.0,
+                (enclosed - left) / volume if volume > 0 else 0.0,
             )
 
 
 def _lengths(ends: NDArray[np.float64]) -> NDArray[np.float64]:
     along = ends[:, 0] - ends[:, 1]
     return np.sqrt(np.einsum("ij,ij->i", along, along))
-
-
-def _volume(corners: NDArray[np.float64]) -> float:
-    """Return six times the volume between triangles, shape (m, 3, 3), and the origin."""
-    return float(np.einsum("ij,ij->", corners[:, 0], normals(corners)))
 
 
 def _stretched(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
@@ -151,9 +149,9 @@ def _lost(
 
 
 def _worst(faults: list[_PoseFaults], size: str, bound: float) -> list[_PoseFaults]:
-    """Return the faults above a bound, the largest first."""
+    """Return the faults above a bound, the largest first; rounding decides no order."""
     over = [fault for fault in faults if getattr(fault, size) > bound]
-    return sorted(over, key=lambda fault: -getattr(fault, size))
+    return sorted(over, key=lambda fault: -round(getattr(fault, size), 9))
 
 
 def _joined(numbers: Iterable[NDArray[np.intp]]) -> NDArray[np.intp]:
