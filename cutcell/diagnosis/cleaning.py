@@ -11,7 +11,6 @@ from scipy.sparse import coo_array
 
 from ..editing import bind
 from ..errors import WeightsError
-from ..geodesics import BoneDistances
 from ..method import ANIMATION, check_resolution
 from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
@@ -23,7 +22,7 @@ from ..weights.prune import prune
 from ..weights.rig_falloff.diffusion import MIN_CELLS
 from ..weights.rig_falloff.pipeline import TAIL
 from .subject import Subject
-from .weights import INFLUENCES, measurable
+from .weights import INFLUENCES
 
 NEAR = 3.0
 """A joint is near a vertex if its distance is at most this multiple of the nearest joint's. From
@@ -135,9 +134,8 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     if weights is None or not weights.any():
         raise WeightsError("the rig has no weights that could be cleaned; bind computes some")
     subject = Subject(rig, resolution, progress=progress)
-    assert subject.distances is not None
     progress("weights", 0.0)
-    remaining = _remaining(subject, subject.distances, weights)
+    remaining = _remaining(subject, weights)
     before, after = weights.sum(axis=1), remaining.sum(axis=1)
     few = np.flatnonzero(after < MIN_REMAINING * before)
     scale = np.divide(before, after, out=np.zeros_like(before), where=after > 0)
@@ -145,8 +143,8 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
         (after < before * (1 - CHANGED))[:, None], remaining * scale[:, None], weights
     )
     if len(few):
-        binding = bind(rig, method=ANIMATION.with_options(resolution=resolution),
-                       graph=subject.graph)  # fmt: skip
+        method = ANIMATION.with_options(resolution=resolution)
+        binding = bind(rig, method=method, graph=subject.graph)
         mixed = remaining[few] + (before - after)[few, None] * binding.weights[few]
         most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
         total = mixed.sum(axis=1, keepdims=True)
@@ -156,18 +154,16 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     return Cleaned(cleaned, *_account(rig, weights - remaining), changed, few)
 
 
-def _remaining(
-    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the remaining part of each weight, shape (n, j)."""
-    welded, count = subject.welded, len(subject.points)
+    welded, distances = subject.welded, subject.distances
     through = distances.all_joints(subject.progress).T
-    at_welded = np.zeros((count, weights.shape[1]))
+    at_welded = np.zeros((len(subject.points), weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
     # Without a path, or with sources outside the body, distances are no evidence.
     is_near = (through <= NEAR * least) | ~np.isfinite(through)
-    is_near[:, ~measurable(subject, distances)] = True
+    is_near[:, ~subject.measurable] = True
     is_near[distances.fallback != 0] = True
     is_near |= _attached(subject, at_welded)[welded]
     anchored = np.zeros(at_welded.shape, bool)

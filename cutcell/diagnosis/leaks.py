@@ -11,7 +11,6 @@ from scipy.sparse.csgraph import connected_components
 
 from ..editing.symmetry import find_mirror
 from ..errors import MeshError
-from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
 from ..runtime.display import count
 from .finding import Finding, Pose, found, share
@@ -37,21 +36,16 @@ DEGREES = 45.0
 
 def check_leaks(subject: Subject) -> Iterator[Finding]:
     """Look for weight that is suspicious whatever else the file says."""
-    weights, distances = subject.rig.weights, subject.distances
-    if weights is None or distances is None or not weights.any():
-        return
-    yield from _stray(subject, distances, weights)
-    yield from _islands(subject, distances, weights)
-    yield from _asymmetric(subject, weights)
+    yield from _stray(subject, subject.weights)
+    yield from _islands(subject, subject.weights)
+    yield from _asymmetric(subject, subject.weights)
 
 
-def _stray(
-    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
-) -> Iterator[Finding]:
+def _stray(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     area = subject.vertex_areas
     shares = area @ weights / area.sum()
-    nearest = distances.nearest_joint
-    reached = distances.fallback == REACHED
+    nearest = subject.distances.nearest_joint
+    reached = subject.distances.fallback == REACHED
     owned = np.bincount(nearest[reached], area[reached], len(shares)) / area.sum()
     stray = np.flatnonzero((shares > 0) & (shares < STRAY) & (owned > OWNED))
     if not len(stray):
@@ -89,15 +83,14 @@ def _stray_advice(weights: NDArray[np.float64]) -> str:
     return " ".join(advice)
 
 
-def _islands(
-    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
-) -> Iterator[Finding]:
+def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
+    distances = subject.distances
     edges = np.ascontiguousarray(subject.edges.edges.T, np.intp)
     at_welded, area = np.ascontiguousarray(weights[subject.first].T), subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
-    measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
+    has_bone = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
     least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
-    for j in np.flatnonzero(measurable & (at_welded.max(axis=1) > NOTICED)).tolist():
+    for j in np.flatnonzero(has_bone & (at_welded.max(axis=1) > NOTICED)).tolist():
         follows = at_welded[j] > NOTICED
         influenced = np.flatnonzero(follows)
         number[influenced] = np.arange(len(influenced))
@@ -114,7 +107,7 @@ def _islands(
         islands, label = influenced[is_island], label[is_island]
         if not len(islands):
             continue
-        through = through_body(subject, distances, subject.first[islands], np.full(len(islands), j))
+        through = through_body(subject, subject.first[islands], np.full(len(islands), j))
         beyond = through - least[islands]
         nearest = np.full(len(total), np.inf)
         np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
@@ -47,9 +46,9 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
             vertices=np.flatnonzero(subject.is_used),
             resolution=subject.graph.lattice.resolution,
         )
-    if subject.distances is not None:
-        yield from _unreachable(subject, subject.distances)
-        yield from _loose(subject, subject.distances)
+    if len(subject.rig.skeleton.joints):
+        yield from _unreachable(subject)
+        yield from _loose(subject)
 
 
 def _thin(subject: Subject) -> Iterator[Finding]:
@@ -111,8 +110,8 @@ def _depths(
     return nearest
 
 
-def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
-    lost = np.flatnonzero((distances.fallback == UNREACHED) & subject.is_used)
+def _unreachable(subject: Subject) -> Iterator[Finding]:
+    lost = np.flatnonzero((subject.distances.fallback == UNREACHED) & subject.is_used)
     pieces = np.unique(subject.component[subject.welded[lost]])
     is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
     follows = (
@@ -129,7 +128,7 @@ def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding
         f"{count(len(pieces), 'component')}: {follows}.",
         advice="Let the component touch the body, or put a joint into it.",
     )
-    barred = np.flatnonzero(distances.fallback == NOT_ALLOWED)
+    barred = np.flatnonzero(subject.distances.fallback == NOT_ALLOWED)
     yield from found(
         "unreachable-vertices",
         vertices=barred,
@@ -139,12 +138,13 @@ def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding
     )
 
 
-def _loose(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
+def _loose(subject: Subject) -> Iterator[Finding]:
     used = np.unique(subject.component[subject.welded[subject.is_used]])
     if len(used) < 2:
         return
     faces = subject.graph.faces[subject.whole]
-    containment = bone_containment(subject.points, faces, subject.component, distances.bones)
+    bones = subject.distances.bones
+    containment = bone_containment(subject.points, faces, subject.component, bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
     yield from found(
         "boneless-components",
@@ -172,15 +172,12 @@ def _holder(subject: Subject, vertices: NDArray[np.intp]) -> int:
     weights = subject.rig.weights
     if weights is not None and weights[vertices].any():
         return int(weights[vertices].sum(axis=0).argmax())
-    assert subject.distances is not None
     return int(np.bincount(subject.distances.nearest_joint[vertices]).argmax())
 
 
 def check_far_parts(subject: Subject) -> Iterator[Finding]:
     """Look for connected components that rigidly follow a joint far from them."""
-    weights, distances = subject.rig.weights, subject.distances
-    if weights is None or distances is None or not weights.any():
-        return
+    weights = subject.weights
     label = subject.component[subject.welded]
     sizes = np.bincount(label)
     number = np.argsort(np.argsort(-sizes, kind="stable"))  # the largest part is the first
@@ -192,7 +189,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
         (part, int(joint[part[0]]), nearest)
         for part in parts
         if component[part[0]] >= 0 and joint[part[0]] >= 0 and (joint[part] == joint[part[0]]).all()
-        if (nearest := _much_nearer(subject, distances, part, int(joint[part[0]]))) >= 0
+        if (nearest := _much_nearer(subject, part, int(joint[part[0]]))) >= 0
     ]
     if not far:
         return
@@ -210,11 +207,9 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     )
 
 
-def _much_nearer(
-    subject: Subject, distances: BoneDistances, part: NDArray[np.intp], joint: int
-) -> int:
+def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
     """Return the joint nearest to a part, if it is much nearer than the one that it follows."""
-    bones, points = distances.bones, subject.points[subject.welded[part]]
+    bones, points = subject.distances.bones, subject.points[subject.welded[part]]
     allowed = subject.rig.allowed
     nearest, least, followed = -1, np.inf, np.full(len(points), np.inf)
     if not (bones.joint == joint).any():

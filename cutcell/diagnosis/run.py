@@ -22,8 +22,8 @@ from .subject import Subject
 from .sweep import check_sweep
 from .weights import check_weights
 
+SHAPE_CHECKS = (check_mesh, check_joints, check_parts)
 WEIGHT_CHECKS = (check_weights, check_leaks, check_far_parts, check_sweep)
-CHECKS = (check_mesh, check_joints, check_parts, *WEIGHT_CHECKS)
 
 RESOLUTION = 64
 """R of the graph of a rig that is examined without distances."""
@@ -144,9 +144,11 @@ def diagnose(
         require_same("distances", distances.fingerprint, expected | {"resolution": resolution})
     subject = Subject(rig, resolution, distances, progress=progress)
     findings: list[Finding] = []
+    checks = [] if only_weights else [*SHAPE_CHECKS]
     _ = subject.graph
-    _ = subject.distances
-    checks = WEIGHT_CHECKS if only_weights else CHECKS
+    if len(rig.skeleton.joints):
+        _ = subject.distances
+        checks += WEIGHT_CHECKS if rig.weights is not None else ()
     for done, check in enumerate(checks):
         progress("checks", done / len(checks))
         findings += check(subject)

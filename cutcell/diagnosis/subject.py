@@ -22,6 +22,9 @@ from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
 from .finding import share
 
+OUTSIDE = 0.05
+"""Part of the longest side: joints farther from the body have no distances through it."""
+
 
 def bones_distance(bones: Bones, joint: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Measure from points (p, 3) straight to the nearest bone of a joint."""
@@ -53,10 +56,8 @@ class Subject:
         )
 
     @cached_property
-    def distances(self) -> BoneDistances | None:
-        """Distances from bones to the vertices; None for a mesh without joints."""
-        if not len(self.rig.skeleton.joints):
-            return None
+    def distances(self) -> BoneDistances:
+        """Distances from bones to the vertices, of a rig with joints."""
         return bone_distances(
             self.graph,
             self.rig.skeleton,
@@ -66,6 +67,18 @@ class Subject:
             allowed=self.rig.allowed,
             progress=self.progress,
         )
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """The weights of a rig that has some."""
+        assert self.rig.weights is not None
+        return self.rig.weights
+
+    @cached_property
+    def measurable(self) -> NDArray[np.bool_]:
+        """Which joints have distances through the body, shape (j,)."""
+        has_bone = np.isin(np.arange(len(self.joint_distance)), self.distances.bones.joint)
+        return has_bone & (self.joint_distance <= OUTSIDE)
 
     @property
     def welded(self) -> NDArray[np.int32]:

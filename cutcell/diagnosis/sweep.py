@@ -36,13 +36,10 @@ ALL = 1 - 1e-9
 
 def check_sweep(subject: Subject) -> Iterator[Finding]:
     """Turn one joint after the other and look for edges, faces and volumes that it ruins."""
-    weights = subject.rig.weights
-    if weights is None or not weights.any():
-        return
-    faults = list(_poses(subject, weights))
+    faults = sorted(_poses(subject), key=lambda fault: -fault.longest)
     yield from _stretched(subject, faults)
     yield from _flipped(subject, faults)
-    yield from _lost(subject, faults, weights)
+    yield from _lost(subject, faults)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +54,13 @@ class _PoseFaults:
     lost: float
 
 
-def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaults]:
+def _poses(subject: Subject) -> Iterator[_PoseFaults]:
     skeleton, points, faces = subject.rig.skeleton, subject.points, subject.faces
-    total = weights.sum(axis=1, keepdims=True)
-    shares = (weights / np.where(total > 0, total, 1))[subject.first]
-    followed = skeleton.subtree @ shares.T
+    shares = subject.weights[subject.first]
+    total = shares.sum(axis=1, keepdims=True)
+    shares /= np.where(total > 0, total, 1)
+    followed = skeleton.subtree @ shares.T  # (j, k)
+    del shares  # 50 joints of a million vertices take half a gigabyte
     joints = subject.graph.lattice.to_unit(skeleton.joints)
     edges = subject.edges.edges
     ends_of, corners_of = (np.ascontiguousarray(rows.T, np.intp) for rows in (edges, faces))
@@ -140,11 +139,9 @@ def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
     )
 
 
-def _lost(
-    subject: Subject, faults: list[_PoseFaults], weights: NDArray[np.float64]
-) -> Iterator[Finding]:
+def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
     evidence = _evidence(subject, _worst(faults, "lost", LOST), "lost", LOST, "{} of the volume")
-    follows = (weights[:, evidence["joints"]] > MOVES).any(axis=1)
+    follows = (subject.weights[:, evidence["joints"]] > MOVES).any(axis=1)
     yield from found("lost-volume", vertices=np.flatnonzero(follows), **evidence)
 
 

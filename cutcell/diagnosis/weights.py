@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
 from ..runtime.display import count
 from .finding import Finding, found
@@ -25,8 +24,6 @@ LEAP = 0.2
 through the air, and than from the nearest joint, has leaked across a gap."""
 FAR = 0.4
 """As far beyond the nearest joint it is out of place, whatever lies between."""
-OUTSIDE = 0.05
-"""Part of the longest side: joints farther from the body have no distances through it."""
 DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
 SEAMS = 0.05
@@ -35,13 +32,9 @@ SEAMS = 0.05
 
 def check_weights(subject: Subject) -> Iterator[Finding]:
     """Look for faults of the file's weights; a fresh character has none."""
-    weights = subject.rig.weights
-    if weights is None or not len(subject.rig.skeleton.joints):
-        return
-    yield from _numbers(subject, weights)
-    yield from _torn(subject, weights)
-    if subject.distances is not None:
-        yield from _leaked(subject, subject.distances, weights)
+    yield from _numbers(subject, subject.weights)
+    yield from _torn(subject, subject.weights)
+    yield from _leaked(subject, subject.weights)
 
 
 def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -76,14 +69,13 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     )
 
 
-def _leaked(
-    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
-) -> Iterator[Finding]:
-    vertex, joint = np.nonzero((weights > NOTICED) & measurable(subject, distances))
+def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
+    distances = subject.distances
+    vertex, joint = np.nonzero((weights > NOTICED) & subject.measurable)
     is_reached = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[is_reached], joint[is_reached]
     nearest = distances.least
-    through = through_body(subject, distances, vertex, joint)
+    through = through_body(subject, vertex, joint)
     points, straight = subject.points[subject.welded[vertex]], np.empty(len(vertex))
     for j in np.unique(joint):
         straight[joint == j] = bones_distance(distances.bones, j, points[joint == j])
@@ -105,25 +97,15 @@ def _leaked(
     )
 
 
-def measurable(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
-    """Return which joints have distances through the body, shape (j,)."""
-    has_distances = np.zeros(len(subject.joint_distance), bool)
-    has_distances[distances.bones.joint] = True
-    return has_distances & (subject.joint_distance <= OUTSIDE)
-
-
 def through_body(
-    subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
+    subject: Subject, vertex: NDArray[np.intp], joint: NDArray[np.intp]
 ) -> NDArray[np.float64]:
     """Return the distances through the body of vertices from joints, measured if necessary."""
+    distances = subject.distances
     through = distances.at(joint, vertex)
-    unknown = np.isinf(through)
+    unknown = np.isin(distances.bones.joint, joint[np.isinf(through)])
     if unknown.any():
-        which = np.isin(distances.bones.joint, joint[unknown])
-        subset = replace(
-            distances,
-            bones=distances.bones.subset(which),
-            sources=distances.sources.subset(which),
-        )
+        bones, sources = distances.bones.subset(unknown), distances.sources.subset(unknown)
+        subset = replace(distances, bones=bones, sources=sources)
         through = subset.all_joints(subject.progress)[joint, vertex]
     return through
