@@ -146,9 +146,9 @@ def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
 
 
 def _worst(faults: list[_PoseFaults], size: str, bound: float) -> list[_PoseFaults]:
-    """Return the faults above a bound, the largest first; rounding decides no order."""
+    """Return the faults above a bound, the largest first."""
     over = [fault for fault in faults if getattr(fault, size) > bound]
-    return sorted(over, key=lambda fault: -round(getattr(fault, size), 9))
+    return sorted(over, key=lambda fault: -getattr(fault, size))
 
 
 def _joined(numbers: Iterable[NDArray[np.intp]]) -> NDArray[np.intp]:
