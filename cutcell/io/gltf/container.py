@@ -31,7 +31,10 @@ BINARY_CHUNK = 0x004E4942
 
 @dataclass(eq=False)
 class Document:
-    """A glTF document: its JSON untouched, and the bytes of its buffers."""
+    """A glTF document: its JSON untouched, and the bytes of its buffers.
+
+    `dataclasses.replace` makes one with empty caches, whose reading counts anew.
+    """
 
     path: Path
     json: dict[str, Any]
@@ -40,19 +43,13 @@ class Document:
     binary: bool = True  # whether it came as a GLB container
     chunks: list[tuple[int, bytes]] = field(default_factory=list)
     """GLB chunks that are neither JSON nor the binary buffer."""
-    accessors: dict[int, Any] = field(default_factory=dict)  # accessors checked so far
-    decoded: dict[int, Any] = field(default_factory=dict)  # accessors decoded so far
-    finite: set[int] = field(default_factory=set)
-    """Accessors that were seen to hold finite numbers only."""
-    triangles: dict[int, Any] = field(default_factory=dict)
-    """Vertices, faces and primitives of meshes read so far."""
-    _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
-    allowance: Allowance = field(init=False)  # memory that may be taken to read it
     warnings: list[str] = field(default_factory=list)  # warnings of reading it, in sentences
     surfaces: Any = None
     """The `Surfaces` that colour the meshes of a document made from another format."""
 
     def __post_init__(self) -> None:
+        self._checked: dict[str, list[dict[str, Any]]] = {}
+        self.forget()
         self.allow()
 
     def allow(self) -> None:
@@ -60,9 +57,11 @@ class Document:
         self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
 
     def forget(self) -> None:
-        """Clear read caches."""
-        for cache in (self.accessors, self.decoded, self.finite, self.triangles):
-            cache.clear()
+        """Clear read caches: what was checked or decoded, by the number of its accessor or mesh."""
+        self.accessors: dict[int, Any] = {}
+        self.decoded: dict[int, Any] = {}
+        self.finite: set[int] = set()  # accessors that hold finite numbers only
+        self.triangles: dict[int, Any] = {}  # vertices, faces and primitives of meshes
 
     def items(self, kind: str) -> list[dict[str, Any]]:
         """Return a top-level list of objects such as "nodes"; empty when absent."""

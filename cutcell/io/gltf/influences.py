@@ -67,11 +67,10 @@ def store_influences(
     old = old or {}
     stored = {}
     for n, (joints, shares) in enumerate(zip(*influences, strict=True)):
-        name = f"JOINTS_{n}"
-        small = joint_count <= 256 and buffer.stored_type(old.get(name)) != np.uint16
-        stored[name] = buffer.store(joints.astype("<u1" if small else "<u2"), old.get(name))
-        name = f"WEIGHTS_{n}"
-        stored[name] = buffer.store(shares.astype("<f4"), old.get(name))
+        small = joint_count <= 256 and buffer.stored_type(old.get(f"JOINTS_{n}")) != np.uint16
+        numbers = joints.astype("<u1" if small else "<u2")
+        for name, values in ((f"JOINTS_{n}", numbers), (f"WEIGHTS_{n}", shares.astype("<f4"))):
+            stored[name] = buffer.store(values, old.get(name))
     return stored
 
 

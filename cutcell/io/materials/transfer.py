@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -64,9 +65,7 @@ def read_materials(rig: Rig) -> Materials | None:
     if len(attached) != len(rig.attachments):
         return None
     # Its own store of what was decoded: others may read the same document now, or forget.
-    stored = source.document
-    document = Document(stored.path, stored.json, stored.buffers, stored.size)
-    document.surfaces = stored.surfaces
+    document = replace(source.document, warnings=[])
     surfaces = document.surfaces
     collected = Collected(() if surfaces is None else surfaces.notes)
     paint: Any = PrimitivePaint(document, collected)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from ....geometry import triangles
 from ....rig import Rig, TriangleMesh
-from ..buffer import BufferWriter
-from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES
+from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
 from ..read.accessors import read_accessor
 from ..read.primitives import StoredFaces
 from ..read.read import BareSource, GltfSource
+from .moves import NewValues
 
 
 def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:
@@ -50,9 +50,7 @@ def with_rescaled(rig: Rig, vertices: NDArray[np.intp]) -> Rig:
     return replace(rig, source=replace(source, rescaled=rescaled))
 
 
-def _edited(
-    stored: StoredFaces, kept: NDArray[np.bool_], turned: NDArray[np.bool_], ends: NDArray[np.intp]
-) -> StoredFaces:
+def _edited(stored: StoredFaces, kept: NDArray, turned: NDArray, ends: NDArray) -> StoredFaces:
     rows = stored.rows
     is_left, flips = kept[rows], turned[rows]
     before = stored.turned if stored.turned is not None else np.zeros(len(is_left), bool)
@@ -64,23 +62,14 @@ def _edited(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class NewFaces:
-    """The new arrays of a primitive whose faces changed."""
-
-    primitive: dict[str, Any]
-    arrays: dict[str, NDArray]  # its "indices", and the attributes that changed with them
-    old: dict[str, int]  # the accessors that these replace
-
-
-def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
+def take_faces(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Take the indices of primitives whose faces changed out of a document, to be replaced.
 
     Normals of vertices that only turned faces use are replaced as well, if they look against
     these.
     """
     source: GltfSource = rig.source
-    replaced = []
+    replaced: list[NewValues] = []
     for stored in source.faces:
         if stored.turned is None:
             continue
@@ -90,37 +79,23 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
             corners = corners[:, ::-1]
         small = corners.max() < np.iinfo(np.uint16).max
         numbers = corners.reshape(-1, 1).astype("<u2" if small else "<u4")
-        arrays = {"indices": numbers, **_normals(source, primitive, corners, stored.turned)}
-        old = {name: primitive["attributes"].pop(name) for name in arrays if name != "indices"}
-        if "indices" in primitive:
-            old["indices"] = primitive.pop("indices")
-        replaced.append(NewFaces(primitive, arrays, old))
+        named, old = primitive["attributes"], primitive.pop("indices", None)
+        primitive.pop("mode", None)  # triangles
+        replaced.append(NewValues(primitive, "indices", numbers, old, ELEMENT_ARRAY_BUFFER))
+        normals = _normals(source, named, corners, stored.turned)
+        for name, values in normals.items():
+            replaced.append(NewValues(named, name, values, named.pop(name), ARRAY_BUFFER))
     return replaced
 
 
-def store_faces(buffer: BufferWriter, replaced: list[NewFaces]) -> None:
-    """Store what `take_faces` found."""
-    for new in replaced:
-        for name, values in new.arrays.items():
-            is_index = name == "indices"
-            owner = new.primitive if is_index else new.primitive["attributes"]
-            target = ELEMENT_ARRAY_BUFFER if is_index else ARRAY_BUFFER
-            owner[name] = buffer.store(values, new.old.get(name), target)
-        new.primitive["mode"] = TRIANGLES
-
-
 def _normals(
-    source: GltfSource,
-    primitive: dict[str, Any],
-    corners: NDArray[np.int32],
-    turned: NDArray[np.bool_],
+    source: GltfSource, named: dict[str, int], corners: NDArray, turned: NDArray
 ) -> dict[str, NDArray]:
     """Return normals, and tangents with them, that no longer look against turned faces.
 
     Exporters that make normals from faces made them inside out as well. Tangents keep their
     direction; the sign of their w follows, so that bumps stay bumps.
     """
-    named = primitive["attributes"]
     if "NORMAL" not in named or not turned.any():
         return {}
     positions, normals = (

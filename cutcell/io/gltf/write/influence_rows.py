@@ -15,12 +15,12 @@ from ..influences import pack_influences, sorted_influences
 from ..read.accessors import find_accessor
 from ..read.primitives import influence_sets, read_weights
 from ..read.read import GltfSource, StoredPart
+from .moves import file_joints
 
 SAME = 1e-12
 """Weights may differ by it from those that loading gave: scaling to a sum of one rounds."""
 LOCAL = 0.5
-"""Integers stay integers while more than this part of the rows is unchanged. Else most weights are
-new, and floats hold them exactly."""
+"""Integers stay integers while more than this part of the rows is unchanged; floats are exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +39,7 @@ def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
     """Compare the stored weights of a part with those of a rig; `saved` has the new skin."""
     assert rig.weights is not None
     source: GltfSource = rig.source
-    # Reading again counts its own memory and has its own caches.
-    document = replace(
-        source.document, warnings=[], accessors={}, decoded={}, finite=set(), triangles={}
-    )
+    document = replace(source.document, warnings=[])  # with memory and caches of its own
     mesh, k = part.primitives[0]
     primitive = document.json["meshes"][mesh]["primitives"][k]
     count = part.rows.stop - part.rows.start
@@ -51,7 +48,7 @@ def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
     neutral = neutral_joints(source.skeleton)[part.joints]
     if loaded[:, neutral].any():
         loaded = normalised(np.where(neutral, 0.0, loaded))
-    origin = np.arange(len(source.nodes)) if rig.origin is None else rig.origin
+    origin = file_joints(rig)
     expected, is_same = np.zeros((count, len(saved.joints))), np.ones(count, bool)
     for slot, joint in enumerate(part.joints):
         if slot < len(saved.joints) and origin[saved.joints[slot]] == joint:
@@ -78,12 +75,9 @@ def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
 
 def store_changed_rows(buffer: BufferWriter, weights: NDArray, rows: StoredRows,
                        old: dict[str, int]) -> dict[str, int]:  # fmt: skip
-    """Store weights of which some rows are those of a document; return accessors by attribute.
+    """Store weights (n, j) of which some rows are a document's; return accessors by attribute.
 
-    Component types stay if they can hold what changes. More sets are added where needed, and none
-    is removed.
-
-    Shapes: weights (n, j), of the skin's joints.
+    Component types stay if they can hold what changes. Sets are added as needed, never removed.
     """
     changed = np.flatnonzero(~rows.is_same)
     share_type = _share_type(rows)
@@ -92,20 +86,17 @@ def store_changed_rows(buffer: BufferWriter, weights: NDArray, rows: StoredRows,
     else:
         joints, shares = _as_integers(weights[changed], share_type)
     stored: dict[str, int] = {}
+    joint_type = max((one.dtype for one in rows.joints), key=lambda dtype: dtype.itemsize)
+    if joints.max(initial=0) > np.iinfo(joint_type).max:
+        joint_type = np.dtype("<u2")
+    stored_shares = [_converted(one, share_type) for one in rows.shares]
     for n in range(max(len(joints), len(rows.joints))):
-        where, share = (
-            _with_rows(source, n, new, changed, kind)
-            for source, new, kind in (
-                (rows.joints, joints, _joint_type(rows.joints, joints)),
-                ([_converted(one, share_type) for one in rows.shares], shares, share_type),
-            )
-        )
-        name = f"JOINTS_{n}"
-        stored[name] = buffer.store(where, old.get(name))
-        name = f"WEIGHTS_{n}"
-        stored[name] = buffer.store(share, old.get(name))
+        where = _with_rows(rows.joints, n, joints, changed, joint_type)
+        share = _with_rows(stored_shares, n, shares, changed, share_type)
+        for name, values in ((f"JOINTS_{n}", where), (f"WEIGHTS_{n}", share)):
+            stored[name] = buffer.store(values, old.get(name))
         if share_type.kind != "f":
-            buffer.accessors[stored[name]]["normalized"] = True
+            buffer.accessors[stored[f"WEIGHTS_{n}"]]["normalized"] = True
     return stored
 
 
@@ -114,12 +105,6 @@ def _share_type(rows: StoredRows) -> np.dtype[Any]:
     types = {one.dtype for one in rows.shares}
     stays = len(types) == 1 and rows.is_same.mean() > LOCAL
     return types.pop() if stays else np.dtype("<f4")
-
-
-def _joint_type(stored: list[NDArray], new: NDArray) -> np.dtype[Any]:
-    """Return the component type of joints: the stored one if it can hold the new numbers."""
-    kind = max((one.dtype for one in stored), key=lambda dtype: dtype.itemsize)
-    return kind if new.max(initial=0) <= np.iinfo(kind).max else np.dtype("<u2")
 
 
 def _converted(shares: NDArray, kind: np.dtype[Any]) -> NDArray:

@@ -36,8 +36,9 @@ class NewValues:
 
     owner: dict[str, Any]  # what refers to them, under `key`
     key: str
-    values: NDArray[np.float32]  # (n, 3) or (n, 16)
-    old: int  # the accessor that they replace
+    values: NDArray  # (n, width)
+    old: int | None  # the accessor that they replace
+    target: int | None = None  # of the buffer view
 
 
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
@@ -56,11 +57,16 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     return replaced + _translations(document, source.document, shifts)
 
 
+def file_joints(rig: Rig) -> NDArray[np.integer]:
+    """Return which joint of its file each joint of a rig is, shape (j,), -1 for none."""
+    return np.arange(len(rig.skeleton.joints)) if rig.origin is None else rig.origin
+
+
 def own_moves(rig: Rig) -> NDArray[np.float64]:
     """Return how far each joint of a rig's file has moved, shape (j, 3), in its own frame."""
     source = rig.source
     by = np.zeros_like(source.skeleton.joints)
-    origin = np.arange(len(by)) if rig.origin is None else rig.origin
+    origin = file_joints(rig)
     has_origin = origin >= 0
     old, new = origin[has_origin], rig.skeleton.joints[has_origin]
     is_moved = (new != source.skeleton.joints[old]).any(axis=1, keepdims=True)
@@ -70,13 +76,13 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     return moved
 
 
-def store_moves(buffer: BufferWriter, replaced: list[NewValues]) -> None:
-    """Store what `take_moves` found."""
-    stored: dict[tuple[int, bytes], int] = {}
+def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
+    """Store values that were taken out of a document, equal ones once."""
+    stored: dict[Any, int] = {}
     for new in replaced:
-        same = new.old, new.values.tobytes()
+        same = new.old, new.target, new.values.tobytes()
         if same not in stored:
-            stored[same] = buffer.store(new.values, new.old, target=None)
+            stored[same] = buffer.store(new.values, new.old, new.target)
         new.owner[new.key] = stored[same]
 
 
@@ -89,13 +95,7 @@ def _shift(node: dict[str, Any], shift: NDArray[np.float64]) -> None:
 
 
 def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
-    """Return a skin's inverse bind matrices as they are stored, shape (k, 16).
-
-    Raises
-    ------
-    SkeletonError
-        There are none, or all are the identity, so that its joints are where their nodes are.
-    """
+    """Return a skin's inverse bind matrices as they are stored, shape (k, 16); refuse none."""
     label, stored = loaded.label("skins", skin), loaded.json["skins"][skin]
     count = len(stored["joints"])
     if BINDS in stored:
@@ -112,7 +112,7 @@ def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArra
     """Return the mended matrices that must be saved: of joints that are moved or hold a vertex."""
     source, weights = rig.source, rig.weights
     assert weights is not None
-    origin = np.arange(len(is_moved)) if rig.origin is None else rig.origin
+    origin = file_joints(rig)
     needed: dict[int, dict[int, NDArray]] = {}
     for part in source.parts:
         mended = source.mended.get(part.skin, {})

@@ -11,7 +11,6 @@ import numpy as np
 
 from ....errors import WeightsError
 from ....rig import Rig
-from ..container import Document
 from ..influences import store_deform
 from ..nodes import Nodes
 from ..read.added_skins import add_skins
@@ -31,14 +30,11 @@ def can_be_skinned(rig: Rig) -> bool:
         return False
     if source.document.path.suffix.lower() not in (".glb", ".gltf"):
         return False  # what was made of another format has no more than a new document
-    same = all(
-        np.array_equal(current, original)
-        for current, original in (
-            (rig.mesh.vertices, source.mesh.vertices),
-            (rig.mesh.faces, source.mesh.faces),
-        )
+    if not np.array_equal(rig.mesh.vertices, source.mesh.vertices):
+        return False
+    return np.array_equal(rig.mesh.faces, source.mesh.faces) and all(
+        _is_plain(source, node) for node in source.placed
     )
-    return same and all(_is_plain(source, node) for node in source.placed)
 
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
@@ -50,14 +46,8 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
         raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source
     stored, skeleton = source.document, rig.skeleton
-    document = Document(
-        stored.path,
-        json.loads(json.dumps(stored.json)),
-        list(stored.buffers),
-        stored.size,
-        stored.binary,
-        stored.chunks,
-    )
+    copied = {"json": json.loads(json.dumps(stored.json)), "buffers": list(stored.buffers)}
+    document = replace(stored, warnings=[], **copied)
     first = len(document.json["nodes"])
     document.json["nodes"] += joint_nodes(skeleton, first)
     armature = first + len(skeleton.joints)

@@ -43,7 +43,7 @@ class _Edit:
         self.document, self.rig = document, rig
         source: GltfSource = rig.source
         self.source = source
-        self.nodes = Nodes(replace(source.document, json=document, _checked={}))
+        self.nodes = Nodes(replace(source.document, json=document))
         self.parents = source.skeleton.parents
         self._base = -1
         self.inverse = source.inverse.copy()

@@ -11,10 +11,10 @@ import base64
 import json
 import os
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from itertools import count
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import quote
 
 import numpy as np
@@ -27,9 +27,9 @@ from ..buffer import BufferWriter
 from ..container import ENDINGS, Document, beside, json_bytes, pack_glb
 from ..influences import pack_influences, store_deform, store_influences, take_influences
 from ..read.read import GltfSource, StoredPart
-from .faces import store_faces, take_faces
+from .faces import take_faces
 from .influence_rows import StoredRows, store_changed_rows, stored_rows
-from .moves import store_moves, take_moves
+from .moves import file_joints, store_values, take_moves
 from .structure import take_structure
 
 
@@ -41,17 +41,31 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     _rename(document, rig)
     _forget_settings(document)
     faces = take_faces(document, rig)
-    dropped = [accessor for new in faces for accessor in new.old.values()]
     parts, moves = take_structure(document, rig, take_moves(document, rig))
-    dropped += [new.old for new in moves]
-    changed = _changed_parts(document, rig, parts)
-    dropped += [accessor for one in changed for accessor in one.old.values()]
+    dropped = [new.old for new in (*faces, *moves) if new.old is not None]
+    changed = []
+    for part, saved in zip(source.parts, parts, strict=True):
+        _check_reachable(rig, saved)
+        rows = _kept_rows(rig, part, saved)
+        if rows is None or not rows.is_same.all():
+            primitives = [document["meshes"][m]["primitives"][k] for m, k in saved.primitives]
+            old: dict[str, int] = {}
+            for primitive in primitives:
+                old |= take_influences(primitive["attributes"])
+            dropped += old.values()
+            changed.append((saved, primitives, old, rows))
     store_deform(document, ((part.skin, part.joints) for part in parts), rig.skeleton.deform)
     buffer = BufferWriter(document, source.document.buffers, dropped)
-    store_moves(buffer, moves)
-    for one in changed:
-        _store(buffer, document, rig, one)
-    store_faces(buffer, faces)
+    store_values(buffer, moves)
+    for part, primitives, old, rows in changed:
+        weights = rig.weights[part.rows][:, part.joints]  # type: ignore[index]
+        if rows is not None and rows.joints and rows.is_same.any():
+            new = store_changed_rows(buffer, weights, rows, old)
+        else:
+            new = store_influences(buffer, pack_influences(weights), len(part.joints), old)
+        for primitive in primitives:
+            primitive["attributes"].update(new)
+    store_values(buffer, faces)
     buffer = with_surface_looks(buffer, source.document.surfaces)
     carried = carry_images(buffer, source.document, path)
     return {**carried, **packed(buffer, source.document, path, carried)}
@@ -80,9 +94,8 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
 
 def _rename(document: dict[str, Any], rig: Rig) -> None:
     """Give nodes the names of joints that were renamed."""
-    source, origin = rig.source, rig.origin
-    for j, name in enumerate(rig.skeleton.names):
-        was = j if origin is None else int(origin[j])
+    source = rig.source
+    for was, name in zip(file_joints(rig).tolist(), rig.skeleton.names, strict=True):
         if was >= 0 and name != source.skeleton.names[was]:
             document["nodes"][source.nodes[was]]["name"] = name
 
@@ -94,46 +107,10 @@ def _forget_settings(document: dict[str, Any]) -> None:
         extras.pop("cutcell", None)
 
 
-class _ChangedPart(NamedTuple):
-    """A part whose weights change, the accessors of the old ones, and what stays of them."""
-
-    part: StoredPart
-    old: dict[str, int]
-    rows: StoredRows | None
-
-
-def _changed_parts(
-    document: dict[str, Any], rig: Rig, parts: Sequence[StoredPart]
-) -> list[_ChangedPart]:
-    """Take the weights of parts out of a document, except of those where none changes."""
-    source: GltfSource = rig.source
-    keeps = source.document.path.suffix.lower() in ENDINGS  # not made of an FBX or USD file
-    changed = []
-    for part, saved in zip(source.parts, parts, strict=True):
-        _check_reachable(rig, saved)
-        rows = stored_rows(rig, part, saved) if keeps else None
-        if rows is None or not rows.is_same.all():
-            partly = rows if rows is not None and rows.joints and rows.is_same.any() else None
-            old: dict[str, int] = {}
-            for primitive in _primitives(document, saved):
-                old |= take_influences(primitive["attributes"])
-            changed.append(_ChangedPart(saved, old, partly))
-    return changed
-
-
-def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, Any]]:
-    return [document["meshes"][mesh]["primitives"][k] for mesh, k in part.primitives]
-
-
-def _store(buffer: BufferWriter, document: dict[str, Any], rig: Rig, one: _ChangedPart) -> None:
-    part = one.part
-    weights = rig.weights[part.rows][:, part.joints]  # type: ignore[index]
-    if one.rows is not None:
-        new = store_changed_rows(buffer, weights, one.rows, one.old)
-    else:
-        new = store_influences(buffer, pack_influences(weights), len(part.joints), one.old)
-    for primitive in _primitives(document, part):
-        primitive["attributes"].update(new)
+def _kept_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows | None:
+    """Return the stored weights of a part, None if its document was made of another format."""
+    is_gltf = rig.source.document.path.suffix.lower() in ENDINGS
+    return stored_rows(rig, part, saved) if is_gltf else None
 
 
 def _check_reachable(rig: Rig, part: StoredPart) -> None:
