@@ -12,7 +12,7 @@ from ..rig import Rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes
-from .gltf.container import ENDINGS, MAGIC, malformed
+from .gltf.container import ENDINGS, MAGIC, extensions, malformed
 from .gltf.read.read import GltfSource, read_gltf
 from .gltf.write.fresh import check_fits, new_files
 from .gltf.write.skinned import can_be_skinned, skinned
@@ -142,7 +142,14 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     with naming(path):
         rig.require_joints()
         check_output(path)
-        files = _files(path, rig)
+        kind = path.suffix.lower()
+        if kind == ".txt":
+            files = rignet_files(path, rig)
+        elif kind == ".npz":
+            files = {path: articulation_bytes(rig)}
+        else:
+            _check_gltf(kind, rig)
+            files = _gltf_files(rig, path)
         write_all(files)
         return tuple(files)
 
@@ -186,8 +193,7 @@ def is_avatar(rig: Rig) -> bool:
     """Return whether a rig is saved with the extensions that make its document a VRM."""
     if not isinstance(rig.source, GltfSource):
         return False
-    extensions = rig.source.document.json.get("extensions")
-    return isinstance(extensions, dict) and not extensions.keys().isdisjoint(AVATAR)
+    return not extensions(rig.source.document.json).keys().isdisjoint(AVATAR)
 
 
 def keeps_document(rig: Rig) -> bool:
@@ -196,16 +202,6 @@ def keeps_document(rig: Rig) -> bool:
     if isinstance(source, GltfSource):
         return source.document.path.suffix.lower() in GLTF  # not made of an FBX or USD file
     return can_be_skinned(rig)
-
-
-def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
-    kind = path.suffix.lower()
-    if kind == ".txt":
-        return rignet_files(path, rig)
-    if kind == ".npz":
-        return {path: articulation_bytes(rig)}
-    _check_gltf(kind, rig)
-    return _gltf_files(rig, path)
 
 
 def _check_gltf(kind: str, rig: Rig) -> None:

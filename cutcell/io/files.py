@@ -18,10 +18,7 @@ LARGEST = 2**28
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Put the file's name in front of every cutcell error raised inside.
-
-    Of several nested ones, the innermost names the file.
-    """
+    """Put the file's name in front of every cutcell error raised inside, the innermost one's."""
     try:
         yield
     except CutcellError as e:
@@ -78,11 +75,9 @@ def read_text(path: Path) -> str:
 
 
 def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LARGEST) -> bytes:
-    """Return what is in the first of some files that is there.
+    """Return what is in the first of some files that is there, in the folder or below it.
 
-    A file may come from a stranger, over the page; it must not reach other files. Names are those
-    of the machine that it was made on: where one leads elsewhere, the file is looked for under its
-    last part in the folder itself.
+    A file may come from a stranger, and name files by their places on another machine.
     """
     folder = path.parent.resolve()
     for name in _tried(names):
@@ -117,11 +112,7 @@ thousand joints for each vertex take some 200 times as much as what they are sto
 
 
 class Allowance:
-    """The rest of the memory that a file of some bytes, with all that belongs to it, may use.
-
-    A few bytes can ask for any amount: an accessor without data, one mesh that is used in a
-    thousand places, a header that announces more than follows.
-    """
+    """The rest of the memory that a file may use, since a few bytes can ask for any amount."""
 
     def __init__(self, size: int) -> None:
         self._size = size

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -22,16 +21,6 @@ from .weights import NO_WEIGHTS, ReadWeights, loaded_rig, summed
 
 MAX_DIGITS = 20
 """Most digits of a vertex's number."""
-
-
-@dataclass
-class _Text:
-    """The lines of a rig file."""
-
-    positions: dict[str, list[float]] = field(default_factory=dict)
-    parents: dict[str, str] = field(default_factory=dict)
-    roots: list[str] = field(default_factory=list)
-    skin: list[tuple[int, list[str]]] = field(default_factory=list)
 
 
 def rig_file(path: Path) -> Path | None:
@@ -60,51 +49,55 @@ def read_rignet(path: Path) -> Rig:
         contents = parse_obj(read_text(obj))
         mesh = contents.mesh
     with naming(path):
-        rig_text = _parse(text)
-        read = _weights(rig_text, len(mesh.vertices), f'mesh "{obj.stem}"')
-        source = ObjSource(obj, contents)
-        return loaded_rig(mesh, _skeleton(rig_text), read, obj.stem, source=source)
+        skeleton, skin = _parse(text)
+        read = _weights(skin, skeleton.names, len(mesh.vertices), f'mesh "{obj.stem}"')
+        return loaded_rig(mesh, skeleton, read, obj.stem, source=ObjSource(obj, contents))
 
 
 def read_rignet_skeleton(path: Path) -> Skeleton:
     """Read the skeleton of a rig file (``.txt``), whose mesh need not exist."""
-    return _skeleton(_parse(read_text(path)))
+    return _parse(read_text(path))[0]
 
 
-def _parse(text: str) -> _Text:
-    contents = _Text()
+def _parse(text: str) -> tuple[Skeleton, list[tuple[int, list[str]]]]:
+    """Return the skeleton, and the number and the words of each line about a vertex."""
+    positions: dict[str, list[float]] = {}
+    parents: dict[str, str] = {}
+    roots: list[str] = []
+    skin: list[tuple[int, list[str]]] = []
     for number, tokens in numbered_words(text):
         kind, rest = tokens[0], tokens[1:]
         if kind == "joints":
             if not rest:
                 raise FileError(f"line {number}: a joint needs a name")
-            if rest[0] in contents.positions:
+            if rest[0] in positions:
                 raise SkeletonError(f'line {number}: the joint "{rest[0][:40]}" is there twice')
-            contents.positions[rest[0]] = numbers(rest[1:], 3, number)
+            positions[rest[0]] = numbers(rest[1:], 3, number)
         elif kind == "root":
-            contents.roots += [_joint(rest, 0, number)]
+            roots.append(_joint(rest, 0, number))
         elif kind == "hier":
             parent, child = _joint(rest, 0, number), _joint(rest, 1, number)
-            if contents.parents.get(child, parent) != parent:
+            if parents.setdefault(child, parent) != parent:
                 raise SkeletonError(f'line {number}: the joint "{child[:40]}" has two parents')
-            contents.parents[child] = parent
         elif kind == "skin":
-            contents.skin.append((number, rest))
+            skin.append((number, rest))
         else:
             raise FileError(
                 f'line {number}: starts with "{kind[:40]}", expected joints, root, hier or skin'
             )
-    if not contents.positions:
+    if not positions:
         raise SkeletonError("has no joints (no lines that start with the word joints)")
-    for name in [*contents.parents, *contents.parents.values(), *contents.roots]:
-        if name not in contents.positions:
+    for name in [*parents, *parents.values(), *roots]:
+        if name not in positions:
             raise SkeletonError(f'the joint "{name[:40]}" has no line that gives its position')
-    for name in contents.roots:
-        if name in contents.parents:
+    for name in roots:
+        if name in parents:
             raise SkeletonError(
-                f'the joint "{name[:40]}" is a root but hangs on "{contents.parents[name][:40]}"'
+                f'the joint "{name[:40]}" is a root but hangs on "{parents[name][:40]}"'
             )
-    return contents
+    place = {name: j for j, name in enumerate(positions)}
+    above = [place[parents[name]] if name in parents else -1 for name in place]
+    return Skeleton(list(positions.values()), above, tuple(place)), skin
 
 
 def _joint(tokens: list[str], at: int, line: int) -> str:
@@ -113,18 +106,14 @@ def _joint(tokens: list[str], at: int, line: int) -> str:
     return tokens[at]
 
 
-def _skeleton(contents: _Text) -> Skeleton:
-    place = {name: j for j, name in enumerate(contents.positions)}
-    parents = [place[contents.parents[n]] if n in contents.parents else -1 for n in place]
-    return Skeleton(np.array(list(contents.positions.values())), np.array(parents), tuple(place))
-
-
-def _weights(contents: _Text, vertices: int, owner: str) -> ReadWeights:
-    if not contents.skin:
+def _weights(
+    skin: list[tuple[int, list[str]]], names: tuple[str, ...], vertices: int, owner: str
+) -> ReadWeights:
+    if not skin:
         return NO_WEIGHTS
-    place = {name: j for j, name in enumerate(contents.positions)}
+    place = {name: j for j, name in enumerate(names)}
     rows, columns, values = [], [], []
-    for line, tokens in contents.skin:
+    for line, tokens in skin:
         is_index = tokens and tokens[0].isdecimal() and len(tokens[0]) <= MAX_DIGITS
         vertex = int(tokens[0]) if is_index else -1
         if not 0 <= vertex < vertices:
@@ -168,10 +157,7 @@ def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
 
 
 def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
-    """Return whether the mesh exists next to a rig file; it is then not written.
-
-    Its texture coordinates, normals and materials are not the rig's to write again.
-    """
+    """Return whether the mesh exists next to a rig file, which then keeps all that it holds."""
     obj = _mesh_goal(path)
     if not os.path.lexists(obj):
         return False

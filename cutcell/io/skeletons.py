@@ -33,10 +33,9 @@ MIN_FIT = 0.2
 
 
 def with_skeleton(rig: Rig, path: Path) -> Rig:
-    """Return a mesh without joints with the skeleton of a file.
+    """Return a mesh without joints with the skeleton of a file, in its scene or its mesh's space.
 
-    Joints have their places in the scene of that file; or, if more of them lie in the mesh then,
-    those in the space of its own mesh, as programs differ in units and axes.
+    The one is taken in which more joints lie in the mesh: programs differ in units and axes.
     """
     with naming(path):
         skeleton, world, stored = _read(path)

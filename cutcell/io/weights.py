@@ -39,11 +39,9 @@ NO_WEIGHTS = ReadWeights(None, (), None)
 def summed(
     rows: NDArray, columns: NDArray, values: NDArray, shape: tuple[int, int], owner: str
 ) -> ReadWeights:
-    """Return the weight matrix of a list of influences, with rows that sum to one or to zero.
+    """Return the weight matrix of influences (k,), with rows that sum to one or to zero.
 
     A weight that is negative or not a finite number counts as none.
-
-    Shapes: rows, columns, values (k,).
     """
     with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
         values = values.astype(np.float64)
@@ -71,12 +69,7 @@ def summed(
 def sum_warnings(
     sums: NDArray[np.float64] | None, faces: NDArray[np.integer], parts: Iterable[Part]
 ) -> list[str]:
-    """Count the vertices whose weights sum to zero, or not to one, with the names of their meshes.
-
-    Vertices without a face are not counted, nor those with a weight that counts as none.
-
-    Shapes: sums (n,), faces (m, 3).
-    """
+    """Count the vertices of faces whose weights sum to zero, or not to one, by their meshes."""
     if sums is None:
         return []
     is_used = np.zeros(len(sums), bool)
@@ -118,11 +111,9 @@ def with_deform(
     weights: NDArray[np.float64] | None,
     stored: NDArray[np.int8] | None = None,
 ) -> tuple[Skeleton, NDArray[np.float64] | None, list[str]]:
-    """Return the skeleton with the joints that may carry weight, the weights, and warnings.
+    """Return the skeleton with the joints that deform, the weights, and warnings.
 
-    The weights are without those of Blender's stand-in for vertices without weights.
-
-    Shapes: weights (n, j), stored (j,): 1, 0 or -1 where the file does not say.
+    Weights of Blender's stand-in are removed; `stored` (j,) is 1, 0 or -1 where the file is silent.
     """
     if not len(skeleton.joints):
         return skeleton, weights, []

@@ -7,11 +7,7 @@ import unicodedata
 
 
 def folded(name: str) -> str:
-    """Return a name in the form in which names are compared.
-
-    Compatibility forms, such as full-width Latin and half-width katakana, become the usual ones,
-    marks join their letters, and upper case becomes lower case.
-    """
+    """Return a name as names are compared: in lower case, without full-width and such forms."""
     return unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
 
 
@@ -146,11 +142,6 @@ def is_control(name: str) -> bool:
 def may_be_control(name: str) -> bool:
     """Return whether a name is that of a control or of a bone: a foot moved by IK is either."""
     return not UNSURE.isdisjoint(words(name)) or bool(MMD_CANCELS.search(_spaced(name)))
-
-
-def is_marked_deforming(name: str) -> bool:
-    """Return whether a name is that of a bone that deforms by Rigify's convention, `DEF-spine`."""
-    return words(name)[:1] == ["def"]
 
 
 def is_socket(name: str) -> bool:

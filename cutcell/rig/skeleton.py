@@ -150,10 +150,7 @@ class Skeleton(Summarized):
 
 
 def with_origin(skeleton: Skeleton, origin: NDArray[np.integer]) -> NDArray[np.int_]:
-    """Return for each joint the nearest one, it or above it, that the file has; else the first.
-
-    Shapes: origin (j,).
-    """
+    """Return for each joint (j,) the nearest one, it or above it, of the file; else the first."""
     nearest = np.arange(len(origin))
     while len(missing := np.flatnonzero((origin[nearest] < 0) & (skeleton.parents[nearest] >= 0))):
         nearest[missing] = skeleton.parents[nearest[missing]]

@@ -7,22 +7,16 @@ from numpy.typing import NDArray
 
 
 def relative(transforms: NDArray, parents: NDArray) -> NDArray[np.float64]:
-    """Return each joint's transform relative to its parent's; a root's stays.
-
-    Shapes: transforms (..., j, 4, 4), parents (j,); returns (..., j, 4, 4).
-    """
+    """Return transforms (..., j, 4, 4) relative to those of the parents (j,); roots' stay."""
     own, held = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
     own[..., held, :, :] = inverses(transforms[..., parents[held], :, :]) @ own[..., held, :, :]
     return own
 
 
 def composed(own: NDArray, parents: NDArray) -> NDArray[np.float64]:
-    """Put every ancestor's transform in front of each joint's own, by doubling.
+    """Put every ancestor's transform in front of each joint's own (..., j, 4, 4), by doubling.
 
-    After step k each joint holds the product over its nearest 2^k ancestors, so that a
-    chain of n joints takes log2(n) steps, whatever order the joints come in.
-
-    Shapes: own (..., j, 4, 4), parents (j,); returns (..., j, 4, 4).
+    After step k each joint holds the product over its nearest 2^k ancestors, in any order.
     """
     transforms, above = own.astype(np.float64), parents.copy()
     while (held := np.flatnonzero(above >= 0)).size:

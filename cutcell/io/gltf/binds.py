@@ -209,12 +209,10 @@ def _contradicts(
 def rest_world(
     matrices: NDArray, shares: NDArray, topmost: NDArray | None, is_control: bool, corners: NDArray
 ) -> NDArray[np.float64]:
-    """Return the matrix to the scene on which most of the vertices' weight agrees.
+    """Return the one of matrices (j, 4, 4) on which most of the vertices' weight (j,) agrees.
 
-    Of a posed character no large part may agree. Then it is that of the topmost joint, `topmost`,
-    if it is much the same. A control above all is believed if the feet, say, agree with it.
-
-    Shapes: matrices (j, 4, 4), shares (j,), topmost (4, 4), corners (2, 3).
+    Without a majority, in a pose, the topmost joint's (4, 4) is taken if it is much the same. A
+    control above all is believed if the feet, say, agree with it.
     """
     chosen = agreed(matrices, shares, corners)
     if topmost is None:
@@ -231,10 +229,7 @@ def rest_world(
 
 
 def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.float64]:
-    """Return the one of some matrices with which most shares agree, the first of equals.
-
-    Shapes: matrices (j, 4, 4), shares (j,), corners (2, 3) of the box that they move.
-    """
+    """Return the one of matrices (j, 4, 4) with which most shares (j,) agree in moving a box."""
     heaviest = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
     near = [np.exp(-apart(matrices, matrices[k], corners) / SOFT) for k in heaviest.tolist()]
     scores = np.array([(shares * one).sum() for one in near])
@@ -244,10 +239,7 @@ def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.f
 
 
 def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.float64]:
-    """Return how far matrices move a box from where another one moves it, in its sizes.
-
-    Shapes: matrices (j, 4, 4), other (4, 4), corners (2, 3); returns (j,).
-    """
+    """Return how far matrices move a box (2, 3) from where another moves it, in its sizes, (j,)."""
     box = np.eye(4)
     box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, np.finfo(float).tiny))
     box[:3, 3] = corners.mean(axis=0)

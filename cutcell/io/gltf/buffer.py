@@ -29,16 +29,9 @@ CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
 
 class BufferWriter:
-    """The accessors, buffer views and bytes of a document that is made or edited.
+    """The accessors, buffer views and bytes of a document whose JSON is made or edited.
 
-    Parameters
-    ----------
-    document : dict
-        The JSON, to be edited.
-    buffers : sequence of bytes
-    dropped, dropped_views : iterable of int
-        Accessors and buffer views that are given up. Those that the document still refers to are
-        left alone.
+    `dropped` accessors and views are given up, except those that it still refers to.
     """
 
     def __init__(
@@ -75,10 +68,7 @@ class BufferWriter:
         target: int | None = ARRAY_BUFFER,
         bounds: bool = False,
     ) -> int:
-        """Store an array and return its accessor: `preferred` if it was dropped.
-
-        Shapes: values (n, k).
-        """
+        """Store an array (n, k) and return its accessor: `preferred` if it was dropped."""
         index = preferred
         if index is None or index not in self._free_accessors:
             index = _new(self.accessors)
@@ -92,11 +82,9 @@ class BufferWriter:
         return index
 
     def append(self, accessor: dict[str, Any], values: NDArray, target: int | None) -> None:
-        """Append an array to the buffer and let an accessor refer to it.
+        """Append an array (n, k) to the buffer and let an accessor refer to it.
 
         Arrays of one type share a buffer view if those that they replace shared one.
-
-        Shapes: values (n, k).
         """
         rows = np.ascontiguousarray(values).view(np.uint8).reshape(len(values), -1)
         if target == ARRAY_BUFFER:  # whose elements start on multiples of 4 bytes
@@ -129,14 +117,10 @@ class BufferWriter:
             self._arrays[key] = view, bytearray()
         return self._arrays[key]
 
-    def add_view(self, content: bytes) -> int:
-        """Store bytes and return their buffer view."""
-        self._added.append((_new(self.views), bytearray(content)))
+    def add_view(self, content: bytes, view: int | None = None) -> int:
+        """Store bytes and return their buffer view, a new one or one that names no buffer yet."""
+        self._added.append((_new(self.views) if view is None else view, bytearray(content)))
         return self._added[-1][0]
-
-    def fill_view(self, view: int, content: bytes) -> None:
-        """Store bytes as the content of a buffer view that names no buffer yet."""
-        self._added.append((view, bytearray(content)))
 
     def finish(self) -> bytes:
         """Return the one buffer; the document then refers to it, and to no other.
@@ -236,10 +220,7 @@ def views_in(value: Any) -> Iterator[int]:
 
 
 def ranges_in(value: Any) -> Iterator[dict[str, Any]]:
-    """Yield the objects that name bytes of a buffer themselves, as buffer views do.
-
-    Extras are an application's own: numbers in there are not taken for references.
-    """
+    """Yield the objects that name bytes of a buffer, as views do; extras are an application's."""
     for owner in _objects_in(value, but="extras"):
         if type(owner.get("buffer")) is int and type(owner.get("byteLength")) is int:
             yield owner

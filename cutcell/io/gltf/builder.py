@@ -65,10 +65,7 @@ class GltfBuilder:
     def add_track(
         self, animation: dict[str, Any], node: int, path: str, times: int, values: NDArray
     ) -> None:
-        """Append the motion of a node to an animation; `times` is an accessor.
-
-        Shapes: values (k, 3) or (k, 4).
-        """
+        """Append the motion of a node (k, 3 or 4) to an animation; `times` is an accessor."""
         sampler = {"input": times, "output": self.floats(values, target=None)}
         target = {"node": node, "path": path}
         animation["channels"].append({"sampler": len(animation["samplers"]), "target": target})

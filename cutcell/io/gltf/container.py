@@ -66,7 +66,7 @@ class Document:
     def items(self, kind: str) -> list[dict[str, Any]]:
         """Return a top-level list of objects such as "nodes"; empty when absent."""
         objects = self.json.get(kind, [])
-        if objects is not self._checked.get(kind):  # long lists are asked for again and again
+        if objects is not self._checked.get(kind, ()):  # long lists are asked for again and again
             if not isinstance(objects, list) or not all(isinstance(x, dict) for x in objects):
                 raise FileError(f'"{kind}" of the glTF document must be a list of objects')
             self._checked[kind] = objects
@@ -74,16 +74,24 @@ class Document:
 
     def item(self, kind: str, index: Any, user: str) -> dict[str, Any]:
         """Return one object of a top-level list; `user` is who refers to it."""
-        objects = self.json.get(kind, [])
-        if not isinstance(objects, list):
-            raise FileError(f'"{kind}" of the glTF document must be a list of objects')
+        objects = self.items(kind)
         if type(index) is not int or not 0 <= index < len(objects):
             raise FileError(
                 f"{user} refers to {kind}[{index}], but the file has {len(objects)} {kind}"
             )
-        if not isinstance(objects[index], dict):
-            raise FileError(f"{kind}[{index}] of the glTF document is not an object")
         return objects[index]
+
+    def view_range(self, view: dict[str, Any], user: str) -> tuple[bytes, int, int]:
+        """Return the buffer of a buffer view, and the first byte and the number of those in it."""
+        self.item("buffers", view.get("buffer"), user)
+        buffer = self.buffers[view["buffer"]]
+        start, length = whole(view, "byteOffset", user, 0), whole(view, "byteLength", user)
+        if start + length > len(buffer):
+            raise FileError(
+                f"{user} ends at byte {start + length} of buffers[{view['buffer']}], "
+                f"which has {len(buffer)}"
+            )
+        return buffer, start, length
 
     def label(self, kind: str, index: int) -> str:
         """Return how to name an object to people: by its name, else by its number."""
@@ -110,6 +118,12 @@ def whole(owner: dict[str, Any], key: str, user: str, default: int | None = None
     if type(value) is not int or value < 0:
         raise FileError(f'{user}: "{key}" must be a whole number, 0 or more, not {value!r}')
     return value
+
+
+def extensions(owner: dict[str, Any]) -> dict[str, Any]:
+    """Return the extensions of an object by name; empty when absent."""
+    value = owner.get("extensions")
+    return value if isinstance(value, dict) else {}
 
 
 def indices(owner: dict[str, Any], key: str, user: str) -> list[int]:
@@ -201,7 +215,7 @@ def _buffer_bytes(
     """Return the bytes of a buffer; `files` keeps what was read, for others that want the same."""
     user = f"buffers[{i}]"
     length = whole(buffer, "byteLength", user)
-    if _is_placeholder(buffer):
+    if any(isinstance(x, dict) and x.get("fallback") is True for x in extensions(buffer).values()):
         return b""  # it is empty: its buffer views are compressed, in another buffer
     uri = buffer.get("uri")
     if uri is None:
@@ -217,12 +231,6 @@ def _buffer_bytes(
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]
-
-
-def _is_placeholder(buffer: dict[str, Any]) -> bool:
-    extensions = buffer.get("extensions")
-    values = extensions.values() if isinstance(extensions, dict) else ()
-    return any(isinstance(value, dict) and value.get("fallback") is True for value in values)
 
 
 def read_uri(path: Path, uri: Any, user: str) -> bytes:
@@ -246,10 +254,7 @@ def read_uri(path: Path, uri: Any, user: str) -> bytes:
 
 
 def beside(path: Path, uri: str) -> Path | None:
-    """Return the file that a relative URI names, None when it leads out of the folder.
-
-    A document may come from a stranger, over the page; it must not reach other files.
-    """
+    """Return the file that a URI names, None outside of the folder: strangers send documents."""
     name = PurePosixPath(unquote(uri))
     outside = name.is_absolute() or ".." in name.parts or ":" in str(name) or "\\" in str(name)
     if outside or "\0" in str(name) or not name.parts:

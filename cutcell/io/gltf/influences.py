@@ -14,10 +14,7 @@ from .container import Document
 
 
 def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
-    """Sort each row's influences into slots of four.
-
-    Shapes: weights (n, j); returns joints (s, n, 4), shares (s, n, 4).
-    """
+    """Sort influences of weights (n, j) into slots of four: joints and shares (s, n, 4)."""
     rounded = normalised(weights).astype(np.float32)
     # The heaviest takes the rounding error, where it matters least, before the influences are
     # sorted: so they are sorted the same way when they are loaded and saved again.
@@ -32,9 +29,9 @@ def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
 def sorted_influences(
     rows: NDArray, columns: NDArray, values: NDArray, count: int, limit: int | None = None
 ) -> tuple[NDArray, NDArray]:
-    """Sort a list of influences into slots of four, the strongest first, `limit` at most.
+    """Sort influences (k,) into slots of four (s, count, 4), the strongest first, `limit` at most.
 
-    Shapes: rows, columns, values (k,); returns joints (s, count, 4), shares (s, count, 4).
+    Returns joints and shares.
     """
     order = np.lexsort((-values, rows))
     rows, columns, values = rows[order], columns[order], values[order]
@@ -87,11 +84,7 @@ def store_deform(
 def read_deform(
     document: Document, skins: Mapping[int, Sequence[int]], count: int
 ) -> NDArray[np.int8]:
-    """Return which of `count` joints deform, as `with_deform` takes it.
-
-    A list that does not fit its skin is ignored with a warning: another program has changed the
-    joints, or the list.
-    """
+    """Return which of `count` joints deform, as `with_deform` takes it, and warn of misfits."""
     stored = np.full(count, -1, np.int8)
     for skin, joints in skins.items():
         extras = document.json["skins"][skin].get("extras")

@@ -14,12 +14,7 @@ from .container import Document, indices
 
 
 class Nodes:
-    """All nodes as arrays."""
-
-    translation: NDArray[np.float64]  # (k, 3), of the rest pose
-    rotation: NDArray[np.float64]  # (k, 4), quaternions (x, y, z, w)
-    scale: NDArray[np.float64]  # (k, 3)
-    local: NDArray[np.float64]  # (k, 4, 4), matrices of the rest pose
+    """All nodes as arrays, at rest."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -29,7 +24,11 @@ class Nodes:
         self.depth = np.zeros(len(self.raw), int)
         for depth, level in enumerate(self.levels):
             self.depth[level] = depth
-        self._read_transforms()
+        count = len(self.raw)
+        self.translation = np.zeros((count, 3))
+        self.rotation = np.tile([0.0, 0.0, 0.0, 1.0], (count, 1))  # quaternions (x, y, z, w)
+        self.scale = np.ones((count, 3))
+        self.local = self._read_transforms()  # (k, 4, 4)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
             self.world = self.compose_world(self.local[None])[0]
         far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
@@ -39,26 +38,18 @@ class Nodes:
                 f"{LARGEST:g}; give it and the nodes above it smaller transforms"
             )
 
-    def _read_transforms(self) -> None:
-        count = len(self.raw)
-        self.translation = np.zeros((count, 3))
-        self.rotation = np.tile([0.0, 0.0, 0.0, 1.0], (count, 1))
-        self.scale = np.ones((count, 3))
-        matrices = {}
+    def _read_transforms(self) -> NDArray[np.float64]:
+        """Fill translation, rotation and scale; return the matrices."""
         for i, node in enumerate(self.raw):
-            for key, target in (
-                ("translation", self.translation),
-                ("rotation", self.rotation),
-                ("scale", self.scale),
-            ):
-                if key in node:
-                    target[i] = self._numbers(i, key, target.shape[1])
+            for key in node.keys() & {"translation", "rotation", "scale"}:
+                target = getattr(self, key)
+                target[i] = self._numbers(i, key, target.shape[1])
+        local = compose(self.translation, self.rotation, self.scale)
+        for i, node in enumerate(self.raw):
             if "matrix" in node:
-                matrices[i] = self._numbers(i, "matrix", 16).reshape(4, 4).T
-        self.local = compose(self.translation, self.rotation, self.scale)
-        for i, matrix in matrices.items():
-            self.local[i] = matrix
-            self.translation[i], self.rotation[i], self.scale[i] = decompose(matrix)
+                local[i] = self._numbers(i, "matrix", 16).reshape(4, 4).T
+                self.translation[i], self.rotation[i], self.scale[i] = decompose(local[i])
+        return local
 
     def _numbers(self, i: int, key: str, count: int) -> NDArray:
         value: Any = self.raw[i][key]
@@ -160,10 +151,7 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
 def node_shifts(
     local: NDArray[np.float64], parents: ArrayLike, frame_shifts: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return how far nodes are shifted in their parents' frames when frames move.
-
-    Shapes: local (k, 4, 4), parents (k,), frame_shifts (k, 3); returns (k, 3).
-    """
+    """Return how far nodes are shifted in their parents' frames when frames move, (k, 3)."""
     above = np.asarray(parents)
     shifts = np.einsum("kab,kb->ka", local[:, :3, :3], frame_shifts)
     return shifts - np.where(above[:, None] >= 0, frame_shifts[above], 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,62 +23,39 @@ class Corners(NamedTuple):
     """(m, 3, 2): texture coordinates from the upper left corner of an image."""
 
 
-class Piece(NamedTuple):
-    """The corners of some faces of a mesh as a file stores them."""
-
-    rows: slice  # the faces
-    corners: Corners  # in the space of the file's mesh, normals of any length
-    turned: NDArray[np.bool_]  # (k,): which faces were turned round since the file was read
-    matrix: NDArray[np.float64]  # (4, 4): from the space of the file's mesh
-
-
-def surface_piece(
-    surface: Surface,
-    faces: NDArray[np.integer],
-    rows: slice,
-    matrix: NDArray[np.float64] | None = None,
-) -> Piece | None:
-    """Return what a surface stores of some faces; None if these are not its own.
-
-    Shapes: faces (k, 3), by the vertices of the surface; matrix (4, 4).
-    """
-    where = stored_corners(surface.faces, faces)
-    if where is None:
-        return None
-    matrix = np.eye(4) if matrix is None else matrix
-    stored = [
-        None if values is None else values.reshape(-1, values.shape[2])[where]
-        for values in (surface.normals, surface.places)
-    ]
-    turned = (where[:, 1] - where[:, 0]) % 3 == 2
-    # Faces of a mirrored mesh are turned on loading, and still face the same side.
-    return Piece(rows, Corners(*stored), turned ^ (np.linalg.det(matrix[:3, :3]) < 0), matrix)
+Piece: TypeAlias = tuple[Surface, NDArray[np.integer], slice, NDArray[np.float64]]
+"""What a file stores of some faces of a mesh: these by the vertices of its surface (k, 3), their
+rows in the mesh, and the matrix (4, 4) from the space of the surface."""
 
 
 def join_corners(
     vertices: NDArray[np.floating], faces: NDArray[np.integer], pieces: Iterable[Piece]
 ) -> Corners:
-    """Return the corners of a mesh of pieces.
+    """Return the corners of a mesh of pieces; the faces of some may not be their surface's.
 
     Where a file has no normal, or a normal without a direction, it is that of the smooth surface.
     """
-    pieces = list(pieces)
-    normals = places = None
-    if any(piece.corners.places is not None for piece in pieces):
-        places = np.zeros((len(faces), 3, 2), np.float32)
-        for rows, corners, _, _ in pieces:
-            if corners.places is not None:
-                places[rows] = np.nan_to_num(corners.places, posinf=0, neginf=0)
-    if any(piece.corners.normals is not None for piece in pieces):
-        stored = np.zeros((len(faces), 3, 3))
-        for rows, corners, turned, matrix in pieces:
-            if corners.normals is not None:
-                facing = face_normals(vertices[faces[rows]])
-                moved = _moved(corners.normals, matrix)
-                against = np.einsum("ikc,ic->ik", moved, facing) < 0
-                stored[rows] = np.where((against & turned[:, None])[..., None], -moved, moved)
-        normals = _complete(stored, vertices, faces)
-    return Corners(normals, places)
+    normals, places = np.zeros((len(faces), 3, 3)), np.zeros((len(faces), 3, 2), np.float32)
+    has_normals = has_places = False
+    for surface, own, rows, matrix in pieces:
+        where = stored_corners(surface.faces, own)
+        if where is None:
+            continue
+        if surface.places is not None:
+            has_places = True
+            stored = surface.places.reshape(-1, 2)[where]
+            places[rows] = np.nan_to_num(stored, posinf=0, neginf=0)
+        if surface.normals is not None:
+            has_normals = True
+            # Faces of a mirrored mesh are turned on loading, and still face the same side.
+            turned = (where[:, 1] - where[:, 0]) % 3 == 2
+            turned ^= np.linalg.det(matrix[:3, :3]) < 0
+            moved = _moved(surface.normals.reshape(-1, 3)[where], matrix)
+            against = np.einsum("ikc,ic->ik", moved, face_normals(vertices[faces[rows]])) < 0
+            normals[rows] = np.where((against & turned[:, None])[..., None], -moved, moved)
+    return Corners(
+        _complete(normals, vertices, faces) if has_normals else None, places if has_places else None
+    )
 
 
 def _moved(normals: NDArray, matrix: NDArray) -> NDArray:

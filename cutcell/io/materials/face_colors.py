@@ -80,49 +80,35 @@ class Materials:
 
 
 class Collected:
-    """The images, their uses and what is to be told of materials; each is listed once."""
+    """Images, their uses, names of materials and notes, as `Materials` lists them; each once."""
 
     def __init__(self, notes: Iterable[str] = ()) -> None:
-        self._layers: dict[Layer, int] = {}
-        self._materials: dict[Hashable, tuple[int, str]] = {}
-        self._images: dict[Hashable, StoredImage] = {}
-        self._notes: dict[str, None] = dict.fromkeys(notes)
-
-    @property
-    def layers(self) -> tuple[Layer, ...]:
-        """The uses of images, in the order of their numbers."""
-        return tuple(self._layers)
-
-    @property
-    def images(self) -> tuple[StoredImage, ...]:
-        """The images, in the order of their numbers."""
-        return tuple(self._images.values())
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Parts that could not be read, in sentences."""
-        return tuple(self._notes)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the materials, in the order of their numbers."""
-        return tuple(name for _, name in self._materials.values())
+        self.layers: dict[Layer, int] = {}
+        self.images: list[StoredImage] = []
+        self.names: list[str] = []
+        self.notes = dict.fromkeys(notes)
+        self._materials: dict[Hashable, int] = {}
+        self._images: dict[int, int] = {}
 
     def material(self, key: Hashable, name: str) -> int:
         """Return the number of a material; `key` is the file's own."""
-        return self._materials.setdefault(key, (len(self._materials), name))[0]
+        if key not in self._materials:
+            self._materials[key] = len(self.names)
+            self.names.append(name)
+        return self._materials[key]
 
     def layer(self, use: Layer, stored: Callable[[], StoredImage]) -> int:
         """Return the number of a use of an image."""
         if use.image not in self._images:
-            self._images[use.image] = stored()
-        use = replace(use, image=list(self._images).index(use.image))
-        return self._layers.setdefault(use, len(self._layers))
+            self.images.append(stored())
+            self._images[use.image] = len(self.images) - 1
+        use = replace(use, image=self._images[use.image])
+        return self.layers.setdefault(use, len(self.layers))
 
     def note(self, label: str, error: Exception) -> None:
         """Record that a material could not be read completely."""
         why = str(error) if isinstance(error, CutcellError) else "it is malformed"
-        self._notes[f"{label} is used without what could not be read of it: {why}"] = None
+        self.notes[f"{label} is used without what could not be read of it: {why}"] = None
 
 
 Paint = Callable[[Any, NDArray, FaceColors], None]

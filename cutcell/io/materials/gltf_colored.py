@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,19 +14,14 @@ from ..gltf.buffer import BufferWriter
 from ..gltf.constants import ELEMENT_ARRAY_BUFFER
 from ..gltf.container import Document
 from ..gltf.read.accessors import find_accessor
-from .corners import Corners, join_corners, surface_piece
+from .corners import Corners, join_corners
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_images import image_notes
-from .gltf_palette import Group, Palette, attributes_of
+from .gltf_palette import Group, Palette
 from .surfaces import SurfacePaint, Surfaces
 from .transfer import has_materials, read_corners, read_materials
 
-
-class _Look(NamedTuple):
-    """Colours and corners of the faces of a mesh."""
-
-    colors: FaceColors | None
-    corners: Corners
+_Look: TypeAlias = tuple[FaceColors | None, Corners]
 
 
 def with_rig_looks(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter:
@@ -34,9 +29,9 @@ def with_rig_looks(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWri
     materials = read_materials(rig) if has_materials(rig) else None
     corners = read_corners(rig)
     if materials is None:
-        return _with_looks(document, data, {0: _Look(None, corners)}, Collected())
-    looks = {k: _Look(one, Corners()) for k, one in enumerate(materials.attachments, start=1)}
-    return _with_looks(document, data, {0: _Look(materials.body, corners), **looks}, materials)
+        return _with_looks(document, data, {0: (None, corners)}, Collected())
+    looks = {k: (one, Corners()) for k, one in enumerate(materials.attachments, start=1)}
+    return _with_looks(document, data, {0: (materials.body, corners), **looks}, materials)
 
 
 def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
@@ -47,7 +42,7 @@ def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> Buffe
     collected = Collected(surfaces.notes)
     paint = SurfacePaint(surfaces, collected)
     view = Document(surfaces.path, document, [data])
-    looks = {}
+    looks: dict[int, _Look] = {}
     for number, surface in surfaces.meshes.items():
         (primitive,) = document["meshes"][number]["primitives"]
         vertices = _raw(view, primitive["attributes"]["POSITION"])
@@ -56,9 +51,8 @@ def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> Buffe
         colors = None
         if surfaces.coloured and surface.is_painted:
             colors = face_colors(faces, [(surface, 0, everything)], paint)
-        piece = surface_piece(surface, faces, everything)
-        corners = join_corners(vertices, faces, [] if piece is None else [piece])
-        looks[number] = _Look(colors, corners)
+        corners = join_corners(vertices, faces, [(surface, faces, everything, np.eye(4))])
+        looks[number] = colors, corners
     return _with_looks(document, data, looks, collected)
 
 
@@ -87,14 +81,10 @@ class _Mesh(NamedTuple):
 def _with_looks(
     document: dict[str, Any], data: bytes, looks: Mapping[int, _Look], uses: Materials | Collected
 ) -> BufferWriter:
-    """Return the writer of a document each of whose meshes has one primitive.
-
-    Weights are stored behind all else, as they are when the document is read and saved again.
-    """
+    """Return the writer of a document of one primitive a mesh; weights are last, as on saving."""
     view, palette = Document(Path(), document, [data]), Palette(uses)
-    count = len(document["meshes"])
-    none = _Look(None, Corners())
-    new_meshes = [_take(view, number, looks.get(number, none), palette) for number in range(count)]
+    numbers = range(len(document["meshes"]))
+    new_meshes = [_take(view, k, looks.get(k, (None, Corners())), palette) for k in numbers]
     buffer = BufferWriter(document, [data], [i for mesh in new_meshes for i in mesh.old.values()])
     plain = palette.store(buffer)
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
@@ -117,8 +107,8 @@ def _take(view: Document, number: int, look: _Look, palette: Palette) -> _Mesh:
     faces, origin = _faces(view, number).astype(np.intp), np.arange(count)
     old: dict[str, int] = {}
     arrays: dict[str, NDArray] = {}
-    groups, values = palette.groups(look.colors) if look.colors is not None else ([], None)
-    normals, places = look.corners
+    colors, (normals, places) = look
+    groups, values = palette.groups(colors) if colors is not None else ([], None)
     columns = [] if values is None else [values]
     if places is not None:
         uv = places + 0.0  # -0 is 0
@@ -135,8 +125,12 @@ def _take(view: Document, number: int, look: _Look, palette: Palette) -> _Mesh:
             arrays["NORMAL"][~arrays["NORMAL"].any(axis=1), 1] = 1  # no face has the vertex
         if places is not None:
             arrays["TEXCOORD_0"] = of_vertex.pop()
-        if of_vertex:
-            arrays = {**dict(attributes_of(groups, of_vertex[0])), **arrays}
+        colored = {}
+        if any(group.textured for group in groups):
+            colored["TEXCOORD_0"] = of_vertex[0][:, :2].astype("<f4")
+        if any(group.varied for group in groups):
+            colored["COLOR_0"] = of_vertex[0][:, 2:].astype("<u2")
+        arrays = colored | arrays
         old["indices"] = primitive.pop("indices")
     is_split = len(origin) > count
     for name in sorted(named, key=_is_weight):
@@ -157,9 +151,9 @@ def _per_vertex(faces: NDArray, values: NDArray[np.float32], count: int) -> NDAr
 def split_at_seams(
     faces: NDArray[np.integer], count: int, values: NDArray[np.float32]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Split vertices whose corners have different values.
+    """Split vertices whose corners have different values (m, 3, k).
 
-    Shapes: faces (m, 3), values (m, 3, k); returns faces (m, 3), origin (count + s,).
+    Returns the faces (m, 3), and the vertex that each vertex was (count + s,).
     """
     corner = faces.reshape(-1).astype(np.intp)
     keys = values.reshape(len(corner), -1)
@@ -190,12 +184,9 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
     for name, values in mesh.arrays.items():
         if _is_weight(name):
             continue
-        number = named[name] = buffer.store(values, mesh.old.get(name))
-        if name == "POSITION":
-            low, high = values.min(axis=0).tolist(), values.max(axis=0).tolist()
-            buffer.accessors[number].update(min=low, max=high)
-        elif name == "COLOR_0":
-            buffer.accessors[number]["normalized"] = True
+        named[name] = buffer.store(values, mesh.old.get(name), bounds=name == "POSITION")
+        if name == "COLOR_0":
+            buffer.accessors[named[name]]["normalized"] = True
     count = buffer.accessors[named["POSITION"]]["count"]
     kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
     primitives.clear()

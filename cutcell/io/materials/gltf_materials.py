@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...errors import CutcellError, FileError
 from ...runtime.colors import srgb
-from ..gltf.container import Document, read_uri, whole
+from ..gltf.container import Document, extensions, read_uri
 from ..gltf.read.accessors import read_accessor
 from ..gltf.read.primitives import attributes
 from .face_colors import (
@@ -30,6 +30,7 @@ MALFORMED = (TypeError, ValueError, KeyError, IndexError, AttributeError, Overfl
 """Errors of reading a malformed document."""
 WRAPS = {33071: CLAMP, 33648: MIRROR}
 """glTF's numbers for these; any other repeats."""
+WRAP_KEYS = ("wrapS", "wrapT")
 NEAREST = 9728
 
 
@@ -101,8 +102,12 @@ class PrimitivePaint:
             if base.texture:
                 texture = self.document.item("textures", base.texture["index"], "a material")
                 uv = places(self.document, primitive, base.texture)[at]
-                corners[..., 3] += wrap(self.document, texture)
-                corners[..., 2] = self._layer(texture, base)
+                sampler: dict[str, Any] = {}
+                if "sampler" in texture:
+                    sampler = self.document.item("samplers", texture["sampler"], "a texture")
+                across, down = (WRAPS.get(sampler.get(key, 0), REPEAT) for key in WRAP_KEYS)
+                corners[..., 3] += 3 * across + down
+                corners[..., 2] = self._layer(texture, sampler, base)
                 corners[..., :2] = uv
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
@@ -129,16 +134,21 @@ class PrimitivePaint:
         values = read_accessor(self.document, index, kind, "COLOR_0")
         return values if kind == "VEC4" else np.pad(values, ((0, 0), (0, 1)), constant_values=1)
 
-    def _layer(self, texture: dict[str, Any], base: _Base) -> int:
+    def _layer(self, texture: dict[str, Any], sampler: dict[str, Any], base: _Base) -> int:
         """Return the number of the use of a texture's image by a material."""
-        use = layer(self.document, texture, base.material, base.factor[3])
-        return self.collected.layer(use, lambda: stored_image(self.document, use.image))
+        source = extension(texture, "EXT_texture_webp").get("source", texture.get("source"))
+        if source is None:
+            raise FileError("its image is in a format that is not read (PNG, JPEG and WebP are)")
+        cutoff = None
+        if base.material.get("alphaMode") == "MASK":  # the image's alpha is times the factor's
+            cutoff = float(base.material.get("alphaCutoff", CUTOFF)) / max(base.factor[3], 1e-3)
+        use = Layer(source, sampler.get("magFilter") == NEAREST, cutoff, base.blended)
+        return self.collected.layer(use, lambda: stored_image(self.document, source))
 
 
 def extension(owner: dict[str, Any], name: str) -> dict[str, Any]:
     """Return what an object says by an extension; empty if nothing."""
-    extensions = owner.get("extensions")
-    value = extensions.get(name) if isinstance(extensions, dict) else None
+    value = extensions(owner).get(name)
     return value if isinstance(value, dict) else {}
 
 
@@ -158,28 +168,6 @@ def places(document: Document, primitive: dict[str, Any], info: dict[str, Any]) 
     return uv * moved.get("scale", (1, 1)) @ turn + moved.get("offset", (0, 0))
 
 
-def wrap(document: Document, texture: dict[str, Any]) -> int:
-    """Return how a texture's image goes on, 3 across + down; see `REPEAT`."""
-    sampler = _sampler(document, texture)
-    across, down = (WRAPS.get(sampler.get(name, 0), REPEAT) for name in ("wrapS", "wrapT"))
-    return 3 * across + down
-
-
-def layer(
-    document: Document, texture: dict[str, Any], material: dict[str, Any], alpha: float
-) -> Layer:
-    """Return how a material uses a texture's image; `alpha` is what that of the image is times."""
-    source = extension(texture, "EXT_texture_webp").get("source", texture.get("source"))
-    if source is None:
-        raise FileError("its image is in a format that is not read (PNG, JPEG and WebP are)")
-    cutoff = None
-    if material.get("alphaMode") == "MASK":
-        cutoff = float(material.get("alphaCutoff", CUTOFF)) / max(alpha, 1e-3)
-    blended = material.get("alphaMode") == "BLEND"
-    nearest = _sampler(document, texture).get("magFilter") == NEAREST
-    return Layer(source, nearest, cutoff, blended)
-
-
 def stored_image(document: Document, number: Any) -> StoredImage:
     """Return an image as it is stored."""
     image = document.item("images", number, "a texture")
@@ -187,15 +175,7 @@ def stored_image(document: Document, number: Any) -> StoredImage:
     if "uri" in image:
         return StoredImage(name, read_uri(document.path, image["uri"], name))
     view = document.item("bufferViews", image.get("bufferView"), name)
-    document.item("buffers", view.get("buffer"), name)
-    start, length = whole(view, "byteOffset", name, 0), whole(view, "byteLength", name)
-    content = document.buffers[view["buffer"]][start : start + length]
-    if not length or len(content) < length:
-        raise FileError(f"{name} is cut short")
-    return StoredImage(name, content)
-
-
-def _sampler(document: Document, texture: dict[str, Any]) -> dict[str, Any]:
-    if "sampler" not in texture:
-        return {}
-    return document.item("samplers", texture["sampler"], "a texture")
+    buffer, start, length = document.view_range(view, name)
+    if not length:
+        raise FileError(f"{name} is empty")
+    return StoredImage(name, buffer[start : start + length])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from ...runtime.colors import linear
 from ..files import whole_characters
 from ..gltf.buffer import BufferWriter
 from .face_colors import BLENDED, OPAQUE, Collected, FaceColors, Materials
-from .gltf_images import Embedded, embedded
+from .gltf_images import embedded
 
 FULL = 2**16 - 1
 PLAIN = "plain"
@@ -23,8 +22,8 @@ class Group(NamedTuple):
 
     material: int  # in the document
     rows: NDArray[np.intp]  # (k,): the faces, ascending
-    textured: bool  # whether they have texture coordinates, and colours by vertex
-    varied: bool  # whether they have texture coordinates, and colours by vertex
+    textured: bool  # whether they have texture coordinates
+    varied: bool  # whether they have colours by vertex
 
 
 class _MaterialKey(NamedTuple):
@@ -40,12 +39,12 @@ class Palette:
     """The materials of a document that is being made; `uses` has those of the faces."""
 
     def __init__(self, uses: Materials | Collected) -> None:
-        self._uses = uses
+        self._uses, self._layers = uses, list(uses.layers)
         self._embedded = [embedded(image) for image in uses.images]
         self._keys: dict[_MaterialKey, int] = {}
 
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
-        """Part faces by material. Returns shapes values (m, 3, 6)."""
+        """Part faces by material; return them, and place and colour of corners (m, 3, 6)."""
         layers, rgba = self._visible(colors)
         # Blending matters where there is an image, or a colour that is not opaque.
         counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
@@ -77,13 +76,10 @@ class Palette:
         return groups, values
 
     def _visible(self, colors: FaceColors) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
-        """Return the layer of each face, -1 where its image cannot be taken in, and its colours.
-
-        These have the shape (m, 3, 4): red, green, blue and opacity, sRGB.
-        """
+        """Return layers (m,), -1 for images that cannot be taken in, and colours (m, 3, 4)."""
         layers = colors.corners[:, 0, 2].astype(int)
         rgba = np.concatenate([colors.tints, colors.opacity[..., None]], axis=2)
-        for k, use in enumerate(self._uses.layers):
+        for k, use in enumerate(self._layers):
             if self._embedded[use.image].problem:
                 rows = layers == k
                 layers[rows] = -1
@@ -104,11 +100,14 @@ class Palette:
         images: dict[int, int] = {}
         for key, material in zip(self._keys, document["materials"], strict=False):
             if key.layer >= 0:
-                number = images.setdefault(self._uses.layers[key.layer].image, len(images))
+                number = images.setdefault(self._layers[key.layer].image, len(images))
                 material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": number}
-        document["images"] = [
-            _image(self._uses.images[k].name, self._embedded[k], buffer) for k in images
-        ]
+        document["images"] = []
+        for k in images:
+            name = whole_characters(self._uses.images[k].name).partition('"')[2].rpartition('"')[0]
+            view = buffer.add_view(self._embedded[k].content)
+            stored = {"bufferView": view, "mimeType": self._embedded[k].kind}
+            document["images"].append({"name": name, **stored} if name else stored)
         document["textures"] = [{"source": number} for number in range(len(images))]
 
     def _material(self, key: _MaterialKey) -> dict[str, Any]:
@@ -119,28 +118,9 @@ class Palette:
         name = whole_characters(self._uses.names[key.name]) if key.name >= 0 else PLAIN
         made: dict[str, Any] = {"name": name} if name else {}
         made |= {"pbrMetallicRoughness": base, "doubleSided": True}
-        use = self._uses.layers[key.layer] if key.layer >= 0 else None
+        use = self._layers[key.layer] if key.layer >= 0 else None
         if key.blended or (use is not None and use.blended):
             made["alphaMode"] = "BLEND"
         elif use is not None and use.cutoff is not None:
             made |= {"alphaMode": "MASK", "alphaCutoff": use.cutoff}
         return made
-
-
-def _image(label: str, image: Embedded, buffer: BufferWriter) -> dict[str, Any]:
-    name = whole_characters(label).partition('"')[2].rpartition('"')[0]
-    made = {"bufferView": buffer.add_view(image.content), "mimeType": image.kind}
-    return {"name": name, **made} if name else made
-
-
-def attributes_of(
-    groups: list[Group], values: NDArray[np.float32]
-) -> Iterator[tuple[str, NDArray]]:
-    """Yield texture coordinates and colours of vertices, as they are stored, where any are used.
-
-    Shapes: values (n, 6).
-    """
-    if any(group.textured for group in groups):
-        yield "TEXCOORD_0", values[:, :2].astype("<f4")
-    if any(group.varied for group in groups):
-        yield "COLOR_0", values[:, 2:].astype("<u2")

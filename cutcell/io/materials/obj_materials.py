@@ -84,19 +84,15 @@ def _libraries(lines: Iterable[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 def parse_mtl(text: str, images: dict[tuple[str, ...], int]) -> dict[str, Material]:
     """Return the materials of a file by name."""
-    materials: dict[str, Material] = {}
+    described: dict[str, dict[str, list[str]]] = {}
     fields: dict[str, list[str]] = {}
-    name = None
     for _, tokens in numbered_words(text):
         if tokens[0] == "newmtl":
-            if name is not None:
-                materials.setdefault(name, _material(name, fields, images))
-            name, fields = " ".join(tokens[1:]), {}
+            fields = {}
+            described.setdefault(" ".join(tokens[1:]), fields)
         else:
             fields[tokens[0].lower()] = tokens[1:]
-    if name is not None:
-        materials.setdefault(name, _material(name, fields, images))
-    return materials
+    return {name: _material(name, fields, images) for name, fields in described.items()}
 
 
 def _material(

@@ -83,12 +83,8 @@ class Surfaces:
             return True
         shades = {one.color for one in materials} | ({WHITE} if -1 in used else set())
         grey = len(shades) == 1 and all(len(set(shade)) == 1 for shade in shades)
-        return (bool(shades) and not grey) or any(map(_varied, painted))
-
-
-def _varied(surface: Surface) -> bool:
-    colors = surface.colors
-    return colors is not None and bool((colors != colors[0, 0, 0]).any())
+        varied = (one.colors for one in painted if one.colors is not None)
+        return (bool(shades) and not grey) or any((c != c[0, 0, 0]).any() for c in varied)
 
 
 class SurfacePaint:
@@ -137,7 +133,8 @@ class SurfacePaint:
 
     def _stored(self, number: int) -> StoredImage:
         image = self.surfaces.images[number]
-        label = image_label(image)
+        name = next(filter(None, image.names), "").replace("\\", "/").rsplit("/", 1)[-1]
+        label = f'image "{name[:80]}"' if name else "an image"
         content = image.content or read_beside(self.surfaces.path, image.names, label)
         return StoredImage(label, content)
 
@@ -177,18 +174,8 @@ def _surface(scene: Mapping[str, NDArray], k: int) -> Surface:
     return Surface(faces, material, **corners)
 
 
-def image_label(image: ImageFile) -> str:
-    """Return how to name an image to people."""
-    name = next((n for n in image.names if n), "")
-    last = name.replace("\\", "/").rsplit("/", 1)[-1]
-    return f'image "{last[:80]}"' if last else "an image"
-
-
 def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:
-    """Find faces among those that a file stores: some may be left out now, or turned round.
-
-    Shapes: stored (m, 3), faces (k, 3); returns (k, 3).
-    """
+    """Find the corners of faces (k, 3) among those that a file stores (m, 3), perhaps turned."""
     order = np.arange(3 * len(stored)).reshape(-1, 3)
     for way in (order, order[:, ::-1]):
         if np.array_equal(stored.reshape(-1)[way], faces):

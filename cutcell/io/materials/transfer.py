@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import CutcellError
 from ...rig import Rig
@@ -21,8 +22,8 @@ from ..gltf.read.primitives import (
     read_triangles,
 )
 from ..gltf.read.read import BareSource, GltfSource
-from .corners import Corners, Piece, join_corners, surface_piece
-from .face_colors import Collected, FaceColors, Materials, face_colors
+from .corners import Corners, Piece, join_corners
+from .face_colors import Collected, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
 from .obj_materials import ObjSource
 from .surfaces import Surface, SurfacePaint, Surfaces
@@ -32,17 +33,15 @@ BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
 def has_materials(rig: Rig) -> bool:
     """Return whether a rig's file colours it: by an image, by vertex, or not in one grey alone."""
-    source = _source(rig)
-    if isinstance(source, Surfaces):
-        return source.coloured
-    if not isinstance(source, GltfSource | BareSource):
+    document, surfaces = _file(rig)
+    if surfaces is not None:
+        return surfaces.coloured
+    if document is None:
         return False
-    if source.document.surfaces is not None:
-        return source.document.surfaces.coloured
-    nodes, document = source.document.items("nodes"), source.document
-    drawn = [primitive for primitive, _, _ in _of_body(document, source)]
-    for node in getattr(source, "attached", ()):
-        drawn += primitives(document, nodes[node]["mesh"], document.label("nodes", node))
+    drawn = [primitive for primitive, _, _ in _of_body(document, rig.source)]
+    for node in getattr(rig.source, "attached", ()):
+        mesh = document.items("nodes")[node]["mesh"]
+        drawn += primitives(document, mesh, document.label("nodes", node))
     return is_coloured(document, drawn)
 
 
@@ -51,34 +50,36 @@ def read_materials(rig: Rig) -> Materials | None:
 
     Unreadable images are replaced by the material's factor, or white, with a note.
     """
-    source = _source(rig)
-    if isinstance(source, Surfaces):
-        if not any(surface.is_painted for surface in source.meshes.values()):
+    document, surfaces = _file(rig)
+    meshes: list[tuple[NDArray, Iterable[tuple[Any, int, slice]]]]
+    if document is not None:
+        attached = getattr(rig.source, "attached", ())
+        if len(attached) != len(rig.attachments):
             return None
-        collected = Collected(source.notes)
-        pieces = [(surface, 0, slice(0, len(rig.mesh.faces))) for surface in source.meshes.values()]
-        body = face_colors(rig.mesh.faces, pieces, SurfacePaint(source, collected))
-        return _complete(body, [], collected)
-    if not isinstance(source, GltfSource | BareSource):
+        # Its own store of what was decoded: others may read the same document now, or forget.
+        document = replace(document, warnings=[])
+        meshes = [(rig.mesh.faces, _of_body(document, rig.source))]
+        for one, node in zip(rig.attachments, attached, strict=True):
+            meshes.append((one.mesh.faces, _of_node(document, node)))
+        face_count = sum(len(faces) for faces, _ in meshes)
+        document.allowance.take(face_count * BYTES_PER_FACE, "its materials")
+    elif surfaces is not None and any(one.is_painted for one in surfaces.meshes.values()):
+        everything = slice(0, len(rig.mesh.faces))
+        meshes = [(rig.mesh.faces, [(one, 0, everything) for one in surfaces.meshes.values()])]
+    else:
         return None
-    attached = getattr(source, "attached", ())
-    if len(attached) != len(rig.attachments):
-        return None
-    # Its own store of what was decoded: others may read the same document now, or forget.
-    document = replace(source.document, warnings=[])
-    surfaces = document.surfaces
     collected = Collected(() if surfaces is None else surfaces.notes)
-    paint: Any = PrimitivePaint(document, collected)
+    paint: Any = PrimitivePaint(document, collected) if document is not None else None
     if surfaces is not None:
         paint = SurfacePaint(surfaces, collected)
-    face_count = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
-    document.allowance.take(face_count * BYTES_PER_FACE, "its materials")
-    body = face_colors(rig.mesh.faces, _of_body(document, source), paint)
-    hung = [
-        face_colors(one.mesh.faces, _of_node(document, node), paint)
-        for one, node in zip(rig.attachments, attached, strict=True)
-    ]
-    return _complete(body, hung, collected)
+    colors = [face_colors(faces, pieces, paint) for faces, pieces in meshes]
+    whole = tuple(one for one in colors if one is not None)
+    if len(whole) < len(colors):
+        return None
+    layers, images = tuple(collected.layers), tuple(collected.images)
+    return Materials(
+        whole[0], whole[1:], layers, images, tuple(collected.notes), tuple(collected.names)
+    )
 
 
 def read_corners(rig: Rig) -> Corners:
@@ -86,20 +87,20 @@ def read_corners(rig: Rig) -> Corners:
 
     Those of a `GltfSource` remain in its document.
     """
-    source, faces = _source(rig), rig.mesh.faces
-    pieces: list[Piece | None] = []
-    if isinstance(source, Surfaces):
+    (document, surfaces), faces = _file(rig), rig.mesh.faces
+    pieces: list[Piece] = []
+    if document is None and surfaces is not None:
         everything = slice(0, len(faces))
-        pieces = [surface_piece(one, faces, everything) for one in source.meshes.values()]
-    elif isinstance(source, BareSource):
-        for one in source.faces:
+        pieces = [(one, faces, everything, np.eye(4)) for one in surfaces.meshes.values()]
+    elif isinstance(rig.source, BareSource):
+        for one in rig.source.faces:
             if one.rows.stop > len(faces):  # the mesh is another one
                 return Corners()
-            surface = _stored_surface(source.document, one)
+            surface = _stored_surface(rig.source.document, one)
             if surface is not None:
                 own = faces[one.rows] - one.first_vertex
-                pieces.append(surface_piece(surface, own, one.rows, source.placed[one.node]))
-    return join_corners(rig.mesh.vertices, faces, [one for one in pieces if one is not None])
+                pieces.append((surface, own, one.rows, rig.source.placed[one.node]))
+    return join_corners(rig.mesh.vertices, faces, pieces)
 
 
 def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
@@ -118,18 +119,14 @@ def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
     return Surface(faces.astype(np.int32), np.full(len(faces), -1, np.int32), **corners)
 
 
-def _source(rig: Rig) -> Any:
-    return rig.source.surfaces if isinstance(rig.source, ObjSource) else rig.source
-
-
-def _complete(
-    body: FaceColors | None, hung: list[FaceColors | None], collected: Collected
-) -> Materials | None:
-    whole = [colors for colors in hung if colors is not None]
-    if body is None or len(whole) < len(hung):
-        return None
-    found = collected.layers, collected.images, collected.notes, collected.names
-    return Materials(body, tuple(whole), *found)
+def _file(rig: Rig) -> tuple[Document | None, Surfaces | None]:
+    """Return the document that a rig came from, and the surfaces of a file that was no glTF."""
+    source = rig.source
+    if isinstance(source, GltfSource | BareSource):
+        return source.document, source.document.surfaces
+    if isinstance(source, ObjSource):
+        return None, source.surfaces
+    return None, source if isinstance(source, Surfaces) else None
 
 
 def _of_body(
@@ -142,8 +139,10 @@ def _of_body(
 
 def _of_node(document: Document, number: int) -> Iterator[tuple[Any, int, slice]]:
     mesh = document.items("nodes")[number]["mesh"]
-    for one in read_triangles(document, mesh, document.label("nodes", number))[2]:
-        yield _what(document, mesh, one.primitive), one.first_vertex, one.rows
+    for primitive, first, rows in read_triangles(document, mesh, document.label("nodes", number))[
+        2
+    ]:
+        yield _what(document, mesh, primitive), first, rows
 
 
 def _what(document: Document, mesh: int, primitive: dict[str, Any]) -> Any:

@@ -102,17 +102,26 @@ def read_skeleton_json(path: Path) -> tuple[Skeleton, bool]:
         twice = next((name for name, times in Counter(names).items() if times > 1), None)
         if twice is not None:
             raise SkeletonError(f'the joint "{twice}" is there twice; names must differ')
-        place = {name: k for k, name in enumerate(names)}
+        place = {name: k for k, name in enumerate(names)} | {None: -1}
         for name, joint in zip(names, joints, strict=True):
-            _check_fields(joint, name)
-        says_deform = any("deform" in joint for joint in joints)
+            unknown = next((k for k in joint if k not in FIELDS), None)
+            if unknown is not None:
+                raise FileError(f'joint "{name}": "{unknown}" is none of {", ".join(FIELDS)}')
+            parent = joint.setdefault("parent", None)
+            if not isinstance(parent, str | None) or parent not in place:
+                wrong = repr(parent)[:40]
+                raise SkeletonError(
+                    f'joint "{name}": its parent {wrong} is not a joint of the file'
+                )
+            if not isinstance(joint.get("deform", True), bool):
+                raise SkeletonError(f'joint "{name}": "deform" must be true or false')
         skeleton = Skeleton(
-            np.array([_position(j, n) for n, j in zip(names, joints, strict=True)]),
-            np.array([_parent(j, n, place) for n, j in zip(names, joints, strict=True)], int),  # type: ignore[arg-type]
-            tuple(names),
-            np.array([_deform(j, n) for n, j in zip(names, joints, strict=True)], bool),
+            [_position(joint, name) for name, joint in zip(names, joints, strict=True)],
+            [place[joint["parent"]] for joint in joints],
+            names,
+            [joint.get("deform", True) for joint in joints],
         )
-        return skeleton, says_deform
+        return skeleton, any("deform" in joint for joint in joints)
 
 
 def _name(joint: Any, k: int) -> str:
@@ -126,12 +135,6 @@ def _name(joint: Any, k: int) -> str:
     return name
 
 
-def _check_fields(joint: dict[str, Any], name: str) -> None:
-    unknown = next((k for k in joint if k not in FIELDS), None)
-    if unknown is not None:
-        raise FileError(f'joint "{name}": "{unknown}" is none of {", ".join(FIELDS)}')
-
-
 def _position(joint: dict[str, Any], name: str) -> list[float]:
     value = joint.get("position")
     try:
@@ -141,20 +144,3 @@ def _position(joint: dict[str, Any], name: str) -> list[float]:
     except OverflowError:  # a whole number with hundreds of digits
         pass
     raise SkeletonError(f'joint "{name}": "position" must be three finite numbers')
-
-
-def _parent(joint: dict[str, Any], name: str, place: dict[str, int]) -> int:
-    parent = joint.get("parent")
-    if parent is None:
-        return -1
-    if not isinstance(parent, str) or parent not in place:
-        wrong = repr(parent)[:40]
-        raise SkeletonError(f'joint "{name}": its parent {wrong} is not a joint of the file')
-    return place[parent]
-
-
-def _deform(joint: dict[str, Any], name: str) -> bool:
-    value = joint.get("deform", True)
-    if not isinstance(value, bool):
-        raise SkeletonError(f'joint "{name}": "deform" must be true or false')
-    return value

@@ -32,7 +32,7 @@ from ..gltf.influences import sorted_influences, store_influences
 from ..gltf.read.read import read_rig
 from ..gltf.read.skins import mended_warning
 from ..materials.surfaces import scene_surfaces
-from .joints import SceneSkin, scene_skins, scene_world
+from .joints import SceneSkin, scene_skins
 
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
@@ -52,8 +52,7 @@ def scene_document(
     made = _SceneBuilder(generator)
     made.add_nodes(scene)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is told later
-        skins = scene_skins(scene)
-        world = scene_world(scene, skins)
+        skins, world = scene_skins(scene)
     for k in range(len(scene["mesh_names"])):
         made.add_scene_mesh(scene, k, skins.get(k))
     made.add_clips(scene)
@@ -112,17 +111,13 @@ class _SceneBuilder(GltfBuilder):
         elif not np.array_equal(scene[f"mesh_{k}_place"], np.eye(4)):
             node["matrix"] = scene[f"mesh_{k}_place"].T.ravel().tolist()
         node["mesh"] = self.meshes[k] = self.add_mesh(name, attributes, faces)
-        self._hang(node, scene, int(scene["mesh_nodes"][k]))
-
-    def _hang(self, node: dict[str, Any], scene: Mapping[str, NDArray], below: int) -> None:
-        above, hidden = below, False
-        while above >= 0:
-            hidden |= bool(scene["node_hidden"][above])
+        above = int(scene["mesh_nodes"][k])
+        while above >= 0 and not scene["node_hidden"][above]:
             above = int(scene["node_parents"][above])
-        if hidden:
+        if above >= 0:
             node["extensions"] = {"KHR_node_visibility": {"visible": False}}
             self.json["extensionsUsed"] = ["KHR_node_visibility"]
-        self.add_node(node, below)
+        self.add_node(node, int(scene["mesh_nodes"][k]))
 
     def _weights(
         self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin, name: str, count: int

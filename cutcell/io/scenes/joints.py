@@ -22,8 +22,8 @@ class SceneSkin:
     """Joints, as nodes, that are placed by their nodes since their matrix contradicts them."""
 
 
-def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
-    """Return the skin of each mesh that has one.
+def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDArray | None]:
+    """Return the skin of each mesh that has one, and the matrix of the first such mesh.
 
     A skin names the joints that hold a vertex. The other bones of the same tree (fingertips,
     roots, helpers) join the first mesh that is bound to it, where they are at rest relative to
@@ -39,26 +39,18 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
         for k in meshes
         if f"mesh_{k}_joints" in scene and len(scene[f"mesh_{k}_joints"])
     }
-    skins = _mended(scene, skins, parents, world)
+    skins = _mended(scene, skins, parents, world) or _unbound(scene, parents, world, bones)
     if not skins:
-        return _unbound(scene, parents, world, bones)
+        return {}, None
+    first = min(skins)  # its joints may be posed
+    stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
     assigned: set[int] = {joint for skin in skins.values() for joint in skin.joints}
     for k, skin in list(skins.items()):
         trees = {_above(joint, parents)[-1] for joint in skin.joints}
         more = [b for b in bones if b not in assigned and _above(b, parents)[-1] in trees]
         skins[k] = _with_more(skin, more, parents, world)
         assigned.update(more)
-    return skins
-
-
-def scene_world(scene: Mapping[str, NDArray], skins: Mapping[int, SceneSkin]) -> NDArray | None:
-    """Return the matrix of the first skinned mesh, since its joints may be posed."""
-    if not skins:
-        return None
-    first = min(skins)
-    world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
-    stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
-    return stands if _inverse(stands)[1] else None
+    return skins, stands if _inverse(stands)[1] else None
 
 
 def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:

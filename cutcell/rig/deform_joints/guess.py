@@ -18,13 +18,13 @@ from ..names import (
     is_control,
     is_end_marker,
     is_fingertip,
-    is_marked_deforming,
     is_mmd_control,
     is_mmd_tip,
     is_of_mmd,
     is_root,
     is_socket,
     may_be_control,
+    words,
 )
 from ..rig import FAR_OUTSIDE, Rig
 from ..skeleton import Skeleton
@@ -119,7 +119,7 @@ class _Guess:
 
     def by_name(self) -> None:
         """Rule out what is called an end marker, a socket, or a control of another joint."""
-        marked = [is_marked_deforming(name) for name in self.names]
+        marked = [words(name)[:1] == ["def"] for name in self.names]  # Rigify's `DEF-spine`
         of_mmd = any(map(is_of_mmd, self.names))
         for j in self.leaves_first:
             if any(marked) and not marked[j]:
@@ -153,10 +153,7 @@ class _Guess:
                 self._rule_out(j, "part of a control")
 
     def by_place(self) -> None:
-        """Rule out what is away from the body, roots on the floor, and ends of bones.
-
-        What is very far away is in other units, which `Rig` refuses.
-        """
+        """Rule out what is away from the body, but in its units, root joints and ends of bones."""
         for j in self.leaves_first:
             if not self.deform[j]:
                 continue

@@ -18,10 +18,7 @@ BYTES_PER_NUMBER = 8
 
 @dataclass(frozen=True, eq=False)
 class Stored:
-    """Elements of one type among the bytes of a buffer; none of them are copied.
-
-    Without bytes all are zero.
-    """
+    """Elements of one type among the bytes of a buffer, not copied; zeros without any bytes."""
 
     count: int
     width: int
@@ -60,10 +57,7 @@ class Accessor:
         return values
 
     def decoded(self, at: NDArray[np.intp] | slice = slice(None)) -> NDArray:
-        """Return some elements, shape (k, width).
-
-        float64 for floats and normalised integers, else the stored integer type.
-        """
+        """Return some elements (k, width): integers as they are stored, all else as float64."""
         values = self.stored()[at]
         if self.base.dtype.kind == "f":
             with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
@@ -122,14 +116,7 @@ def _viewed(
     """Return `count` elements that `owner` finds in its buffer view."""
     view = document.item("bufferViews", owner["bufferView"], user)
     name = f"bufferViews[{owner['bufferView']}]"
-    document.item("buffers", view.get("buffer"), name)
-    buffer = document.buffers[view["buffer"]]
-    start, length = whole(view, "byteOffset", name, 0), whole(view, "byteLength", name)
-    if start + length > len(buffer):
-        raise FileError(
-            f"{name} ends at byte {start + length} of buffers[{view['buffer']}], "
-            f"which has {len(buffer)}"
-        )
+    buffer, start, length = document.view_range(view, name)
     offset = whole(owner, "byteOffset", user, 0)
     element = width * dtype.itemsize
     stride = whole(view, "byteStride", name, 0) or element

@@ -27,9 +27,9 @@ from .skins import Bind
 
 
 def bind_to_bones(document: Document, nodes: Nodes) -> tuple[Bind | None, str]:
-    """Give skins to the meshes of a document without any, if it has bones; else say why not.
+    """Give skins to the meshes of a document, in the scene's space, or say why it has no bones.
 
-    The rig's space is that of the scene. Meshes that hang on a bone are accessories, unless all do.
+    Meshes that hang on a bone are accessories, unless all do.
     """
     meshes = [
         i

@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....runtime.display import listed
-from ..container import Document, indices
+from ..container import Document, extensions, indices
 from ..nodes import Nodes
 
-NOT_EMPTY = ("mesh", "camera", "skin")
-EXTENSIONS_NOT_EMPTY = ("KHR_lights_punctual", "EXT_mesh_gpu_instancing")
+NOT_EMPTY = ("mesh", "camera", "skin", "KHR_lights_punctual", "EXT_mesh_gpu_instancing")
 MIN_CHAIN = 3
 """Nodes of a chain of bones. Two nodes are one if their tree has no others."""
 MARGIN = 0.1
@@ -59,9 +58,8 @@ def find_bones(
 
 def human_bones(document: Document) -> dict[int, str]:
     """Return VRM's name of each node that its humanoid lists."""
-    extensions = document.json.get("extensions")
     names: dict[int, str] = {}
-    for key, item in extensions.items() if isinstance(extensions, dict) else ():
+    for key, item in extensions(document.json).items():
         if key not in ("VRM", "VRMC_vrm") or not isinstance(item, dict):
             continue
         humanoid = item.get("humanoid")
@@ -85,10 +83,8 @@ def _empty(nodes: Nodes) -> set[int]:
     """Return the nodes of the scene without mesh, camera or light."""
     empty = set()
     for i in nodes.in_scene():
-        node = nodes.raw[i]
-        extensions = node.get("extensions")
-        names = extensions if isinstance(extensions, dict) else {}
-        if not node.keys() & set(NOT_EMPTY) and not names.keys() & set(EXTENSIONS_NOT_EMPTY):
+        used = nodes.raw[i].keys() | extensions(nodes.raw[i]).keys()
+        if used.isdisjoint(NOT_EMPTY):
             empty.add(i)
     return empty
 

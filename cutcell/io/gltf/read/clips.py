@@ -17,8 +17,7 @@ from ..container import Document
 from ..nodes import Nodes, compose, node_shifts
 from .accessors import Accessor, find_accessor, read_accessor
 
-FRAMES_A_SECOND = 30
-MAX_FRAMES = 3600
+FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
 """Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
@@ -37,11 +36,11 @@ def read_clips(
     if not animations:
         return ()
     tree = _Subtree(nodes, joints, np.linalg.inv(world), inverse)
-    reader = _Reader(document, tree)
+    key_times: dict[Any, NDArray[np.float64]] = {}
     clips = []
     for i, animation in enumerate(animations):
         label = document.label("animations", i)
-        tracks = reader.tracks(animation, label)
+        tracks = _tracks(document, tree.place, animation, label, key_times)
         if tracks:
             duration = max(float(track.keys[-1]) for track in tracks)
             name = animation.get("name")
@@ -125,67 +124,56 @@ class Channels:
         return replace(self, tree=self.tree.moved(by))
 
 
-class _Reader:
-    """Reads channels, and checks what many of them share once."""
-
-    def __init__(self, document: Document, tree: _Subtree) -> None:
-        self._document = document
-        self._tree = tree
-        self._keys: dict[int, NDArray[np.float64]] = {}
-
-    def tracks(self, animation: dict[str, Any], label: str) -> list[Track]:
-        """Return the channels of an animation that move a joint, grouped by their keys."""
-        channels, samplers = animation.get("channels"), animation.get("samplers")
-        if not isinstance(channels, list) or not isinstance(samplers, list):
-            raise FileError(f'{label}: needs "channels" and "samplers"')
-        groups: dict[Any, Track] = {}
-        for channel in channels:
-            target = channel.get("target") if isinstance(channel, dict) else None
-            if not isinstance(target, dict):
-                raise FileError(f'{label}: a channel has no "target"')
-            node, path = target.get("node"), target.get("path")
-            if node not in self._tree.place or path not in WIDTHS:
-                continue
-            at = channel.get("sampler")
-            if type(at) is not int or not 0 <= at < len(samplers):
-                raise FileError(f"{label}: a channel uses sampler {at!r} of {len(samplers)}")
-            sampler = samplers[at]
-            if not isinstance(sampler, dict):
-                raise FileError(f"{label}: its sampler {at} is not an object")
-            how = sampler.get("interpolation", LINEAR)
-            keys, values = self._checked(sampler, how, path, label)
-            track = groups.setdefault((sampler["input"], how, path), Track(keys, how, path, {}))
-            track.values[self._tree.place[node]] = values
-        return list(groups.values())
-
-    def _checked(
-        self, sampler: dict[str, Any], how: Any, path: str, label: str
-    ) -> tuple[NDArray[np.float64], Accessor]:
-        """Return the keys of a sampler and the values at them."""
-        keys = self._key_times(sampler.get("input"), label)
-        kind = "VEC4" if path == "rotation" else "VEC3"
-        index: Any = sampler.get("output")
-        values = find_accessor(self._document, index, kind, label)
-        if how not in INTERPOLATIONS:
-            raise FileError(f"{label}: the interpolation {how!r} is none of glTF's")
-        needed = len(keys) * (3 if how == CUBICSPLINE else 1)
-        if len(values) != needed:
-            raise FileError(
-                f"{label}: {len(keys)} keys need {needed} values, {len(values)} are there"
-            )
-        if index not in self._document.finite:
-            if not np.isfinite(values.decoded()).all():
-                raise FileError(f"{label} holds values that are not finite numbers")
-            self._document.finite.add(index)
-        return keys, values
-
-    def _key_times(self, index: Any, label: str) -> NDArray[np.float64]:
-        if type(index) is not int or index not in self._keys:
-            keys = read_accessor(self._document, index, "SCALAR", label)[:, 0]
+def _tracks(
+    document: Document, place: dict[int, int], animation: dict[str, Any], label: str,
+    key_times: dict[Any, NDArray[np.float64]],
+) -> list[Track]:  # fmt: skip
+    """Return the channels that move a node of a subtree, by their keys, which are cached."""
+    channels, samplers = animation.get("channels"), animation.get("samplers")
+    if not isinstance(channels, list) or not isinstance(samplers, list):
+        raise FileError(f'{label}: needs "channels" and "samplers"')
+    groups: dict[Any, Track] = {}
+    for channel in channels:
+        target = channel.get("target") if isinstance(channel, dict) else None
+        if not isinstance(target, dict):
+            raise FileError(f'{label}: a channel has no "target"')
+        node, path = target.get("node"), target.get("path")
+        if node not in place or path not in WIDTHS:
+            continue
+        at = channel.get("sampler")
+        if type(at) is not int or not 0 <= at < len(samplers):
+            raise FileError(f"{label}: a channel uses sampler {at!r} of {len(samplers)}")
+        sampler = samplers[at]
+        if not isinstance(sampler, dict):
+            raise FileError(f"{label}: its sampler {at} is not an object")
+        how, index = sampler.get("interpolation", LINEAR), sampler.get("input")
+        if type(index) is not int or index not in key_times:
+            keys = read_accessor(document, index, "SCALAR", label)[:, 0]
             if keys.dtype.kind != "f" or not np.isfinite(keys).all() or (np.diff(keys) < 0).any():
                 raise FileError(f"{label}: its key times must be ascending numbers of seconds")
-            self._keys[index] = keys
-        return self._keys[index]
+            key_times[index] = keys
+        keys = key_times[index]
+        track = groups.setdefault((index, how, path), Track(keys, how, path, {}))
+        track.values[place[node]] = _values(document, sampler, how, path, len(keys), label)
+    return list(groups.values())
+
+
+def _values(
+    document: Document, sampler: dict[str, Any], how: Any, path: str, keys: int, label: str
+) -> Accessor:
+    """Return the values of a sampler, checked."""
+    index: Any = sampler.get("output")
+    values = find_accessor(document, index, "VEC4" if path == "rotation" else "VEC3", label)
+    if how not in INTERPOLATIONS:
+        raise FileError(f"{label}: the interpolation {how!r} is none of glTF's")
+    needed = keys * (3 if how == CUBICSPLINE else 1)
+    if len(values) != needed:
+        raise FileError(f"{label}: {keys} keys need {needed} values, {len(values)} are there")
+    if index not in document.finite:
+        if not np.isfinite(values.decoded()).all():
+            raise FileError(f"{label} holds values that are not finite numbers")
+        document.finite.add(index)
+    return values
 
 
 class _Subtree:
@@ -247,10 +235,7 @@ def _interpolated(
     before: NDArray, after: NDArray, left: NDArray, right: NDArray, how: str, times: NDArray,
     path: str,
 ) -> NDArray:  # fmt: skip
-    """Interpolate channels with common keys.
-
-    Shapes: before, after (f,), left, right (f, c, width), times (f,); returns (f, c, width).
-    """
+    """Interpolate channels from left to right (f, c, width), between times (f,) of keys (f,)."""
     if how == STEP:
         return left
     span = after - before

@@ -19,7 +19,7 @@ from ....errors import FileError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES, WIDTHS
-from ..container import Document, read_document, whole
+from ..container import Document, extensions, read_document, whole
 from .accessors import component
 from .primitives import attributes, primitives
 
@@ -47,7 +47,7 @@ def decompress_meshopt(document: Document) -> None:
     """Replace the compressed buffer views of a document by plain ones with the same numbers."""
     contents: dict[int, bytes] = {}
     for name in MESHOPT:
-        used = [i for i, v in enumerate(document.items("bufferViews")) if _has(v, name)]
+        used = [i for i, v in enumerate(document.items("bufferViews")) if name in extensions(v)]
         for i in used:
             view, user = document.items("bufferViews")[i], f"bufferViews[{i}]"
             contents[i] = _decoded(document, _take(view, name, user), user).tobytes()
@@ -58,16 +58,12 @@ def decompress_meshopt(document: Document) -> None:
     if not contents:
         return
     for buffer in document.items("buffers"):  # placeholders say so in an extension
-        for name in filter(lambda name: _has(buffer, name), MESHOPT):
+        for name in extensions(buffer).keys() & set(MESHOPT):
             _take(buffer, name, "a buffer")
     writer = BufferWriter(document.json, document.buffers)
     for i, content in contents.items():
-        writer.fill_view(i, content)
+        writer.add_view(content, i)
     document.buffers = [writer.finish()]
-
-
-def _has(owner: dict[str, Any], name: str) -> bool:
-    return isinstance(owner.get("extensions"), dict) and name in owner["extensions"]
 
 
 def _take(owner: dict[str, Any], name: str, user: str) -> dict[str, Any]:
@@ -95,14 +91,7 @@ def _forget_extension(document: Document, name: str, label: str) -> None:
 
 def _decoded(document: Document, compressed: dict[str, Any], user: str) -> NDArray:
     count, stride = whole(compressed, "count", user), whole(compressed, "byteStride", user)
-    start, length = whole(compressed, "byteOffset", user, 0), whole(compressed, "byteLength", user)
-    document.item("buffers", compressed.get("buffer"), user)
-    buffer = document.buffers[compressed["buffer"]]
-    if start + length > len(buffer):
-        raise FileError(
-            f"{user}: its compressed bytes end at byte {start + length} of "
-            f"buffers[{compressed['buffer']}], which has {len(buffer)}"
-        )
+    buffer, start, length = document.view_range(compressed, f"{user} (compressed)")
     mode = compressed.get("mode")
     if mode not in MODES:
         raise FileError(f"{user}: its mode {mode!r} is none of {', '.join(MODES)}")
@@ -141,7 +130,7 @@ def _compressed(document: Document) -> list[tuple[str, dict[str, Any], dict[str,
     for m, mesh in enumerate(document.items("meshes")):
         drawn = primitives(document, m, f"meshes[{m}]") if "primitives" in mesh else ()
         for k, primitive in enumerate(drawn):
-            if not _has(primitive, DRACO):
+            if DRACO not in extensions(primitive):
                 continue
             user = f"{document.label('meshes', m)}, primitive {k}"
             extension = _take(primitive, DRACO, user)
@@ -175,12 +164,8 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
 
 def _bytes(document: Document, view: Any) -> bytes:
     owner, name = document.item("bufferViews", view, DRACO), f"bufferViews[{view}]"
-    document.item("buffers", owner.get("buffer"), name)
-    start, length = whole(owner, "byteOffset", name, 0), whole(owner, "byteLength", name)
-    data = document.buffers[owner["buffer"]][start : start + length]
-    if len(data) < length or not length:
-        raise FileError(f"{name} is cut short: {length} bytes announced, {len(data)} there")
-    return data
+    buffer, start, length = document.view_range(owner, name)
+    return buffer[start : start + length]
 
 
 class _Unpacking:

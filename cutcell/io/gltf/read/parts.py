@@ -8,7 +8,7 @@ import numpy as np
 
 from ....rig import Attachment, LeftOut
 from ....runtime.display import listed
-from ..container import Document
+from ..container import Document, extensions
 from ..nodes import Nodes
 from .primitives import drawn_primitives
 
@@ -29,10 +29,7 @@ def hidden_nodes(nodes: Nodes) -> set[int]:
     hidden: set[int] = set()
     for level in nodes.levels:
         for i in level.tolist():
-            extensions = nodes.raw[i].get("extensions")
-            visibility = (
-                extensions.get("KHR_node_visibility") if isinstance(extensions, dict) else None
-            )
+            visibility = extensions(nodes.raw[i]).get("KHR_node_visibility")
             off = isinstance(visibility, dict) and visibility.get("visible", True) is False
             if off or nodes.parents[i] in hidden:
                 hidden.add(i)
@@ -80,18 +77,15 @@ def left_out_warnings(
     left_out: Iterable[LeftOut], attachments: Iterable[Attachment]
 ) -> tuple[str, ...]:
     """List the meshes that are seen in the file and are not bound, in sentences."""
-    outside = [one.name for one in left_out if one.why == OUTSIDE]
-    alone = [one.name for one in left_out if one.why == NO_JOINT]
-    rigid = [one.name for one in attachments if not one.hidden]
-    sentences = (
-        (
-            rigid,
-            "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them",
-        ),
-        (
-            alone,
-            "have no skin and hang on no joint, and are left out. `bind --accessories` binds them",
-        ),
-        (outside, "are outside of the default scene, and are left out. Move them to that scene"),
+    groups = (
+        [one.name for one in attachments if not one.hidden],
+        [one.name for one in left_out if one.why == NO_JOINT],
+        [one.name for one in left_out if one.why == OUTSIDE],
     )
-    return tuple(f"some meshes ({listed(names)}) {what}" for names, what in sentences if names)
+    reasons = (
+        "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them",
+        "have no skin and hang on no joint, and are left out. `bind --accessories` binds them",
+        "are outside of the default scene, and are left out. Move them to that scene",
+    )
+    pairs = zip(groups, reasons, strict=True)
+    return tuple(f"some meshes ({listed(names)}) {reason}" for names, reason in pairs if names)

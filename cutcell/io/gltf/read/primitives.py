@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,15 +20,8 @@ BYTES_PER_CORNER = 24
 BYTES_PER_SET = 4 * (8 + 8)
 """Bytes of a vertex's joints and weights, as a list of influences."""
 DRAWS_TRIANGLES = (TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN)
-
-
-class Drawn(NamedTuple):
-    """One of the triangle primitives of a mesh whose vertices and faces were put together."""
-
-    number: int  # among all of the mesh
-    primitive: dict[str, Any]
-    first_vertex: int
-    rows: slice  # its faces
+Drawn: TypeAlias = tuple[dict[str, Any], int, slice]
+"""A primitive of a mesh whose vertices and faces were put together, its first vertex, its faces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +135,7 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
     drawn: list[Drawn] = []
     start: dict[Any, int] = {}
     total = triangles = 0
-    for k, name, primitive in drawn_primitives(document, mesh, user):
+    for _, name, primitive in drawn_primitives(document, mesh, user):
         positions = read_positions(document, primitive, name)
         key = primitive["attributes"]["POSITION"]
         if key not in start:
@@ -151,7 +144,7 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
             vertices.append(positions)
         corners = read_faces(document, primitive, len(positions), name)
         rows = slice(triangles, triangles := triangles + len(corners))
-        drawn.append(Drawn(k, primitive, start[key], rows))
+        drawn.append((primitive, start[key], rows))
         faces.append(corners + start[key])
     if not drawn:
         return np.zeros((0, 3)), np.zeros((0, 3), int), drawn
@@ -167,11 +160,7 @@ def influence_sets(named: dict[str, Any]) -> list[int]:
 def read_weights(
     document: Document, primitive: dict[str, Any], count: int, joints: int, user: str
 ) -> ReadWeights:
-    """Return the weights on a skin's joints, shape (count, joints), `NO_WEIGHTS` without any.
-
-    Rows are scaled to sum to one; rows of zero stay zero. Weights that are negative or not a
-    number count as none, of which the document warns.
-    """
+    """Return the weights (count, joints) as `summed` does; the document gets its warnings."""
     named = attributes(primitive, user)
     sets = influence_sets(named)
     if not sets:

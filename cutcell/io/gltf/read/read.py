@@ -31,6 +31,9 @@ from .primitives import (
 )
 from .skins import Bind, read_bind, read_skeleton
 
+VERTEX_NAMES = ("POSITION", "JOINTS_", "WEIGHTS_")
+"""Attributes of a vertex buffer; primitives that share them draw from the same."""
+
 
 @dataclass(eq=False)
 class StoredPart:
@@ -51,8 +54,7 @@ class GltfSource:
     parts: list[StoredPart]
     skeleton: Skeleton
     nodes: list[int]  # the node of each joint
-    inverse: NDArray[np.float64]
-    """Inverse bind matrix of each joint, for vertices in the rig's space, shape (j, 4, 4)."""
+    inverse: NDArray[np.float64]  # (j, 4, 4): of each joint, for vertices in the rig's space
     faces: tuple[StoredFaces, ...] = ()
     attached: tuple[int, ...] = ()  # the node of each attachment
     rescaled: NDArray[np.bool_] | None = None
@@ -155,10 +157,7 @@ def read_rig(
 
 
 def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig:
-    """Return the scene's meshes as a rig without joints, in the scene's space and units.
-
-    `why` says why it has no joints, if that may be a surprise.
-    """
+    """Return the scene's meshes as a rig without joints; `why` is said where that surprises."""
     shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node]
     shown = [i for i in nodes.in_scene() if i in set(shown)] or shown
     drawn = {
@@ -206,10 +205,9 @@ class _Stored(NamedTuple):
 def _read_parts(
     document: Document, nodes: Nodes, shown: list[int], bind: Bind, is_bare: bool = False
 ) -> _Stored:
-    """Read every vertex buffer once, however many primitives draw from it.
+    """Read every vertex buffer once; without skins, each node counts as one of no joints.
 
-    A skinned mesh that is in the scene twice, with two skins, is read for the first: both draw
-    with the same stored weights. Without skins, each node counts as one of no joints.
+    A mesh with two skins is read for the first: both draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
     _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
@@ -225,7 +223,8 @@ def _read_parts(
         for k, label, primitive in drawn_primitives(document, mesh, document.label("nodes", i)):
             positions = read_positions(document, primitive, label)
             corners = read_faces(document, primitive, len(positions), label)
-            key = (skin, _vertex_key(primitive, label))
+            named_accessors = attributes(primitive, label).items()
+            key = skin, *sorted(one for one in named_accessors if one[0].startswith(VERTEX_NAMES))
             if key not in parts:
                 document.allowance.take(positions.nbytes, label)
                 read, joints = NO_WEIGHTS, len(bind.skins[skin])
@@ -250,12 +249,6 @@ def _read_parts(
     return stored._replace(parts=list(parts.values()))
 
 
-def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
-    named = attributes(primitive, label)
-    names = ("POSITION", "JOINTS_", "WEIGHTS_")
-    return tuple(sorted((k, v) for k, v in named.items() if k.startswith(names)))
-
-
 def _dense(
     document: Document,
     parts: list[StoredPart],
@@ -263,10 +256,7 @@ def _dense(
     shape: tuple[int, int],
     rigid: Mapping[int, int],
 ) -> tuple[NDArray | None, NDArray | None]:
-    """Return the weights of all parts, and what each row summed to in the file.
-
-    `rigid` has the joint of each mesh that moves with a single one.
-    """
+    """Return all weights and the rows' sums in the file; `rigid` has the joints of rigid meshes."""
     if all(read.weights is None for read in stored):
         return None, None
     document.allowance.take_weights(*shape)

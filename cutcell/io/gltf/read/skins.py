@@ -142,18 +142,12 @@ class Bind:
     """All joints of a file, and how each skin's vertices get into the rig's space."""
 
     nodes: list[int] = field(default_factory=list)  # the node of each joint
-    inverse: list[NDArray] = field(default_factory=list)
-    """Inverse bind matrix of each joint, for vertices in the rig's space."""
-    skins: dict[int, list[int]] = field(default_factory=dict)
-    """Joint of the rig for each joint of a skin."""
-    to_rig: dict[int, NDArray] = field(default_factory=dict)
-    """From a skin's bind space to the rig's space."""
-    world: NDArray = field(default_factory=lambda: np.eye(4))
-    """From the rig's space to the scene, at rest."""
-    unbound: set[int] = field(default_factory=set)
-    """Joints whose skin has no inverse bind matrices to take a position from."""
-    stays: dict[int, NDArray] = field(default_factory=dict)
-    """Places of joints that stay where a matrix was that was replaced."""
+    inverse: list[NDArray] = field(default_factory=list)  # of each, for the rig's space
+    skins: dict[int, list[int]] = field(default_factory=dict)  # the joints of each skin
+    to_rig: dict[int, NDArray] = field(default_factory=dict)  # from each skin's bind space
+    world: NDArray = field(default_factory=lambda: np.eye(4))  # from the rig to the scene, at rest
+    unbound: set[int] = field(default_factory=set)  # joints whose skin has no bind matrices
+    stays: dict[int, NDArray] = field(default_factory=dict)  # places, despite a new matrix
     mended: dict[int, dict[int, NDArray]] = field(default_factory=dict)
     """Matrices that replace those of the file, by skin and the joint's number in it."""
 
@@ -161,10 +155,7 @@ class Bind:
 def read_bind(
     document: Document, nodes: Nodes, skins: list[int], world: NDArray | None = None
 ) -> Bind:
-    """Bring the skins of a file together; the first one sets the space.
-
-    `world` leads from there to the scene; the joints at rest say where it is when left out.
-    """
+    """Bring the skins of a file into the space of the first, which `world` leads to the scene."""
     bind = Bind()
     stored = read_skins(document, nodes, skins)
     place: dict[int, int] = {}

@@ -18,12 +18,9 @@ from .moves import NewValues
 
 
 def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:
-    """Return a rig with some faces dropped and some turned round.
+    """Return a rig with only faces that are `kept` (m,), some of them turned round (m,).
 
-    One that came from glTF can still be saved into its document. There a primitive keeps one
-    face at least: it may not be empty.
-
-    Shapes: kept, turned (m,).
+    In a glTF document, into which it can still be saved, a primitive keeps one face at least.
     """
     faces = np.where(turned[:, None], rig.mesh.faces[:, [0, 2, 1]], rig.mesh.faces)
     source = rig.source
@@ -43,9 +40,8 @@ def with_rescaled(rig: Rig, vertices: NDArray[np.intp]) -> Rig:
     source = rig.source
     if not isinstance(source, GltfSource):
         return rig
-    rescaled = np.zeros(len(rig.mesh.vertices), bool)
-    if source.rescaled is not None:
-        rescaled |= source.rescaled
+    before = np.zeros(len(rig.mesh.vertices), bool) if source.rescaled is None else source.rescaled
+    rescaled = before.copy()
     rescaled[vertices] = True
     return replace(rig, source=replace(source, rescaled=rescaled))
 
@@ -91,10 +87,9 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewValues]:
 def _normals(
     source: GltfSource, named: dict[str, int], corners: NDArray, turned: NDArray
 ) -> dict[str, NDArray]:
-    """Return normals, and tangents with them, that no longer look against turned faces.
+    """Return normals that no longer look against turned faces, and tangents with signs to match.
 
-    Exporters that make normals from faces made them inside out as well. Tangents keep their
-    direction; the sign of their w follows, so that bumps stay bumps.
+    Exporters that make normals from faces made them inside out as well.
     """
     if "NORMAL" not in named or not turned.any():
         return {}

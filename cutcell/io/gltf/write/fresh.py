@@ -27,13 +27,7 @@ MAX_SHIFT = 1e-3
 
 
 def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
-    """Return the files of a rig: mesh, normals, skin, joints as nodes, clips, attachments.
-
-    The rig's file gives the base colours, and normals and texture coordinates of corners; see
-    `materials.transfer`.
-
-    `check_fits` says whether the rig can become one.
-    """
+    """Return the files of a rig for which `check_fits` was called, coloured by its own file."""
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     buffer = with_rig_looks(*_document(rig), rig)

@@ -25,14 +25,11 @@ LOCAL = 0.5
 
 @dataclass(frozen=True, eq=False)
 class StoredRows:
-    """Influences of a part as its document stores them, each of `joints` and `shares` (n, 4).
+    """Influences of a part as its document stores them."""
 
-    `is_same` (n,) tells which rows loading would read as the weights to be saved.
-    """
-
-    joints: list[NDArray]
-    shares: list[NDArray]
-    is_same: NDArray[np.bool_]
+    joints: list[NDArray]  # (n, 4) each
+    shares: list[NDArray]  # (n, 4) each
+    is_same: NDArray[np.bool_]  # (n,): which loading would read as the weights to be saved
 
 
 def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
@@ -126,10 +123,7 @@ def _with_rows(
 
 
 def _as_integers(weights: NDArray, kind: np.dtype[Any]) -> tuple[NDArray, NDArray]:
-    """Sort each row's influences into slots of four, as integers whose sum stands for one.
-
-    Shapes: weights (n, j); returns joints (s, n, 4), shares (s, n, 4).
-    """
+    """Sort weights (n, j) as `pack_influences` does, as integers whose sum stands for one."""
     one = np.iinfo(kind).max
     exact = normalised(weights) * one
     whole = np.floor(exact)

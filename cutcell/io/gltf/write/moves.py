@@ -27,7 +27,6 @@ from ..nodes import Nodes, node_shifts
 from ..read.accessors import read_accessor
 
 BINDS = "inverseBindMatrices"
-"""The key of a skin."""
 
 
 @dataclass(frozen=True, eq=False)

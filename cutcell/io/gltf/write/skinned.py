@@ -11,6 +11,7 @@ import numpy as np
 
 from ....errors import WeightsError
 from ....rig import Rig
+from ..container import extensions
 from ..influences import store_deform
 from ..nodes import Nodes
 from ..read.added_skins import add_skins
@@ -38,10 +39,7 @@ def can_be_skinned(rig: Rig) -> bool:
 
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
-    """Return the files to write so that a document holds a rig's skeleton and weights.
-
-    The document gets the joints and skins without weights, and is then read and saved as any other.
-    """
+    """Return the files of a document that gets joints and skins, and is then saved as any other."""
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source
@@ -64,8 +62,7 @@ def _is_plain(source: BareSource, node: int) -> bool:
     """Return whether a node's mesh can be skinned: triangles only, and it mirrors nothing."""
     owner, meshes = source.document.json["nodes"][node], source.document.json["meshes"]
     of_triangles = all(draws_triangles(p) for p in meshes[owner["mesh"]]["primitives"])
-    extensions = owner.get("extensions")
-    copied = isinstance(extensions, dict) and INSTANCES in extensions
+    copied = INSTANCES in extensions(owner)
     return of_triangles and not copied and bool(np.linalg.det(source.placed[node][:3, :3]) > 0)
 
 

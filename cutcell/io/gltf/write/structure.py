@@ -155,19 +155,13 @@ class _Edit:
         return columns, new
 
     def _frame_above(self, f: int) -> NDArray[np.float64]:
-        """Return the inverse bind matrix of a joint's parent; the world matrix for a root.
-
-        A skinning matrix of the parent is its world matrix times this.
-        """
+        """Return the inverse bind matrix of a joint's parent; the world matrix for a root."""
         above = int(self.parents[f])
         frame: NDArray[np.float64] = self.inverse[above] if above >= 0 else self.rig.world
         return frame
 
     def _behind(self, f: int) -> NDArray[np.float64]:
-        """Return the rest matrix of a joint's parent node, relative to its parent joint.
-
-        Seen from the scene for a root.
-        """
+        """Return the rest matrix of a joint's parent node in its parent joint, or in the scene."""
         above = int(self.parents[f])
         stop = self.source.nodes[above] if above >= 0 else -1
         node, matrix = self.nodes.parents[self.source.nodes[f]], np.eye(4)

@@ -152,8 +152,7 @@ UNFIT = re.compile(r"[\x00-\x1f\x7f:\\\ud800-\udfff]")
 def buffer_file(path: Path, source: Document, reserved: Collection[Path] = ()) -> Path:
     """Return the file for the buffer of a document: NAME.bin, or NAME-2.bin and so on.
 
-    A file that is there is replaced only if it is the buffer of the document that is replaced.
-    One that the rig was read from is replaced only if its document is.
+    It replaces nothing but the buffer of a document that is replaced.
     """
     replaceable = _buffers_of(path)
     if os.path.realpath(path) != os.path.realpath(source.path):
