@@ -153,10 +153,7 @@ def _weights(arrays: dict[str, NDArray], vertices: int, joints: int, owner: str)
 
 
 def articulation_bytes(rig: Rig) -> bytes:
-    """Return a rig as an Articulation-XL archive.
-
-    `root_index` is the first root; further roots are joints on which no bone ends.
-    """
+    """Return a rig as an Articulation-XL archive; `root_index` is the first of its roots."""
     skeleton = rig.skeleton
     children = np.flatnonzero(skeleton.parents >= 0)
     arrays = {

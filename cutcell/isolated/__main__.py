@@ -33,10 +33,7 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
 
 
 def limit_memory(allowance: int) -> None:
-    """Limit the further memory of this process, 0 for no limit; only on Linux.
-
-    A lower limit that this process began with stays.
-    """
+    """Limit the further memory of this process on Linux, if not 0; a lower limit stays."""
     try:
         import resource
 

@@ -91,14 +91,10 @@ def geometry(mesh):
     counts = np.array([face.num_indices for face in mesh.faces], int)
     corners, polygons = cut_polygons(points, vertices, counts)
     arrays = {"vertices": points, "faces": vertices[corners], "dropped": dropped(mesh)}
-    if mesh.vertex_normal.exists and (not mesh.generated_normals or is_smoothed(mesh)):
+    is_smoothed = len(mesh.face_smoothing) or len(mesh.edge_smoothing)
+    if mesh.vertex_normal.exists and (not mesh.generated_normals or is_smoothed):
         arrays["normals"] = at_corners(mesh.vertex_normal, corners).astype(np.float32)
     return arrays, corners, polygons
-
-
-def is_smoothed(mesh):
-    """Return whether a file says which edges of a mesh are smooth."""
-    return bool(len(mesh.face_smoothing) or len(mesh.edge_smoothing))
 
 
 def dropped(mesh):

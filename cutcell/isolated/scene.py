@@ -42,10 +42,9 @@ class Scene:
             self._clips.append(name)
 
     def material(self, key, describe):
-        """Return the number of a material, -1 if it cannot be shown.
+        """Return the number of a material, -1 if `describe` returns None, else a row of them.
 
-        `describe` returns None, or name, color, opacity, image, whether alpha cuts, and what tells
-        the position in the image.
+        A row has name, color, opacity, image, whether alpha cuts, and the reader of positions.
         """
         if key not in self._numbers:
             row = describe()

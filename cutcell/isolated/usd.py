@@ -148,10 +148,7 @@ class Stage:
 
 
 def cut(mesh, points):
-    """Cut a mesh's polygons into triangles, counter-clockwise.
-
-    Returns shapes faces, corners (m, 3), polygons (m,).
-    """
+    """Cut polygons into triangles: faces, corners (m, 3), polygons (m,), counter-clockwise."""
     count = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], int)
     vertices = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], int)
     name = mesh.GetPrim().GetName()

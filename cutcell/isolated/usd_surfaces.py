@@ -22,10 +22,7 @@ TIME = Usd.TimeCode.EarliestTime()
 
 
 def surface(prim, faces, corners, polygons, scene, file):
-    """Return what the triangles of a mesh have, and what of it is not read.
-
-    Shapes: faces, corners (m, 3), polygons (m,).
-    """
+    """Return the arrays of triangles: faces, corners (m, 3), polygons (m,); and what is dropped."""
     primvars, triangles = UsdGeom.PrimvarsAPI(prim), (corners, polygons, faces)
     sets = texture_sets(primvars)
     binding = UsdShade.MaterialBindingAPI(prim)

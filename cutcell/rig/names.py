@@ -119,10 +119,7 @@ def is_end_marker(name: str) -> bool:
 
 
 def is_fingertip(name: str) -> bool:
-    """Return whether a name is that of the tip of a finger or toe.
-
-    In the names of HumanIK and Mixamo the fourth joint of a finger is its tip.
-    """
+    """Return whether a name is that of the tip of a finger or toe, the fourth joint in Mixamo."""
     found = words(name)
     return ("tip" in found and not DIGITS.isdisjoint(found)) or bool(
         FOURTH.search(unicodedata.normalize("NFKC", name))

@@ -150,7 +150,11 @@ def read_document(path: Path) -> Document:
         )
     parsed, warnings = _parse(text)
     document = Document(path, parsed, [], len(text), data[:4] == MAGIC, others, warnings=warnings)
-    _check_version(document)
+    asset = parsed.get("asset")
+    if not isinstance(asset, dict) or "version" not in asset:
+        raise FileError('is JSON, but not glTF: it has no "asset" with a "version"')
+    if not str(asset["version"]).startswith("2."):
+        raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
     files: dict[str, bytes] = {}
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
@@ -199,14 +203,6 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
 
 def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is not a JSON number")
-
-
-def _check_version(document: Document) -> None:
-    asset = document.json.get("asset")
-    if not isinstance(asset, dict) or "version" not in asset:
-        raise FileError('is JSON, but not glTF: it has no "asset" with a "version"')
-    if not str(asset["version"]).startswith("2."):
-        raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
 
 
 def _buffer_bytes(

@@ -29,10 +29,7 @@ def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
 def sorted_influences(
     rows: NDArray, columns: NDArray, values: NDArray, count: int, limit: int | None = None
 ) -> tuple[NDArray, NDArray]:
-    """Sort influences (k,) into slots of four (s, count, 4), the strongest first, `limit` at most.
-
-    Returns joints and shares.
-    """
+    """Sort influences (k,) into joints and shares in slots of four (s, count, 4), descending."""
     order = np.lexsort((-values, rows))
     rows, columns, values = rows[order], columns[order], values[order]
     slot = np.arange(len(rows)) - np.searchsorted(rows, rows)

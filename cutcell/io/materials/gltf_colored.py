@@ -151,10 +151,7 @@ def _per_vertex(faces: NDArray, values: NDArray[np.float32], count: int) -> NDAr
 def split_at_seams(
     faces: NDArray[np.integer], count: int, values: NDArray[np.float32]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Split vertices whose corners have different values (m, 3, k).
-
-    Returns the faces (m, 3), and the vertex that each vertex was (count + s,).
-    """
+    """Split vertices by their corners' values (m, 3, k); return faces, and origins (count + s,)."""
     corner = faces.reshape(-1).astype(np.intp)
     keys = values.reshape(len(corner), -1)
     order = np.lexsort((*keys.T, corner))

@@ -77,11 +77,7 @@ def image_notes(images: Sequence[StoredImage]) -> tuple[str, ...]:
 
 
 def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict[Path, bytes]:
-    """Keep images in separate files reachable from the new document.
-
-    A ``.gltf`` that becomes a ``.glb``, or a ``.glb`` that moves, takes them in; a ``.gltf``
-    that moves takes them along. A file that is not there is left as it is named.
-    """
+    """Keep images in separate files reachable: a ``.glb`` takes them in, a ``.gltf`` along."""
     source = document.path
     moved = os.path.realpath(source.parent) != os.path.realpath(target.parent)
     to_text = target.suffix.lower() == ".gltf"

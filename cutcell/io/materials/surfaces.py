@@ -150,7 +150,12 @@ def scene_surfaces(
     those that are embedded, `image_I_content`. Of each mesh K perhaps `mesh_K_materials` (m,),
     `mesh_K_places`, `mesh_K_colors` and `mesh_K_normals`; see `Surface`.
     """
-    meshes = {number: _surface(scene, k) for k, number in numbers.items()}
+    meshes = {}
+    for k, number in numbers.items():
+        faces = scene[f"mesh_{k}_faces"].astype(np.int32)
+        material = scene.get(f"mesh_{k}_materials", np.full(len(faces), -1)).astype(np.int32)
+        corners = {key: scene.get(f"mesh_{k}_{key}") for key in ("places", "colors", "normals")}
+        meshes[number] = Surface(faces, material, **corners)
     materials = [
         Material(str(name), tuple(values[:3]), int(image), values[3], bool(cut), True)
         for name, values, (image, cut) in zip(
@@ -165,13 +170,6 @@ def scene_surfaces(
         for i, names in enumerate(scene["image_files"])
     ]
     return Surfaces(path, meshes, tuple(materials), tuple(images))
-
-
-def _surface(scene: Mapping[str, NDArray], k: int) -> Surface:
-    faces = scene[f"mesh_{k}_faces"].astype(np.int32)
-    material = scene.get(f"mesh_{k}_materials", np.full(len(faces), -1)).astype(np.int32)
-    corners = {key: scene.get(f"mesh_{k}_{key}") for key in ("places", "colors", "normals")}
-    return Surface(faces, material, **corners)
 
 
 def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:

@@ -46,10 +46,7 @@ def has_materials(rig: Rig) -> bool:
 
 
 def read_materials(rig: Rig) -> Materials | None:
-    """Return the base colours that a rig's file gives it.
-
-    Unreadable images are replaced by the material's factor, or white, with a note.
-    """
+    """Return the base colours that a rig's file gives it, with notes on what is unreadable."""
     document, surfaces = _file(rig)
     meshes: list[tuple[NDArray, Iterable[tuple[Any, int, slice]]]]
     if document is not None:
@@ -83,10 +80,7 @@ def read_materials(rig: Rig) -> Materials | None:
 
 
 def read_corners(rig: Rig) -> Corners:
-    """Return normals and texture coordinates that a rig's file gives the corners of its body.
-
-    Those of a `GltfSource` remain in its document.
-    """
+    """Return normals and texture coordinates of a body's corners, unless its document has them."""
     (document, surfaces), faces = _file(rig), rig.mesh.faces
     pieces: list[Piece] = []
     if document is None and surfaces is not None:

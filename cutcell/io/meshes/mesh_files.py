@@ -37,10 +37,7 @@ def read_soup(path: Path, bare: bool = False) -> Rig:
 
 
 def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | ObjSource | None]:
-    """Read a mesh with every vertex in the file's order, and what colours it, if anything does.
-
-    A binary STL has no shared vertices: each triangle brings its own three.
-    """
+    """Read a mesh with every vertex in the file's order, and what colours it, if anything does."""
     if path.suffix.lower() == ".obj":
         contents = parse_obj(read_text(path))  # names the line that is wrong
         return contents.mesh, ObjSource(path, contents)

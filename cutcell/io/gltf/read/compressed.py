@@ -149,7 +149,11 @@ def _plain(document: Document, extension: dict[str, Any]) -> bool:
 
 
 def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
-    pieces = [_bytes(document, view) for view in views]
+    pieces = []
+    for view in views:
+        owner = document.item("bufferViews", view, DRACO)
+        buffer, start, length = document.view_range(owner, f"bufferViews[{view}]")
+        pieces.append(buffer[start : start + length])
     data = b"".join(pieces)
     job = {"data": np.frombuffer(data, np.uint8), "ends": np.cumsum([len(p) for p in pieces])}
     seconds = MIN_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
@@ -160,12 +164,6 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
         )
     except WorkFailedError as e:
         raise FileError(f"its Draco compression cannot be undone: {e}") from None
-
-
-def _bytes(document: Document, view: Any) -> bytes:
-    owner, name = document.item("bufferViews", view, DRACO), f"bufferViews[{view}]"
-    buffer, start, length = document.view_range(owner, name)
-    return buffer[start : start + length]
 
 
 class _Unpacking:

@@ -124,14 +124,10 @@ def read_triangles(
 ) -> tuple[NDArray, NDArray, list[Drawn]]:
     """Return vertices, faces and triangle primitives of a whole mesh, buffers counted once."""
     document.item("meshes", mesh, user)
-    if mesh not in document.triangles:
-        document.triangles[mesh] = _triangles(document, mesh, user)
-    return document.triangles[mesh]
-
-
-def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArray, list[Drawn]]:
-    vertices: list[NDArray] = []
-    faces: list[NDArray] = []
+    if mesh in document.triangles:
+        return document.triangles[mesh]
+    vertices: list[NDArray] = [np.zeros((0, 3))]
+    faces: list[NDArray] = [np.zeros((0, 3), int)]
     drawn: list[Drawn] = []
     start: dict[Any, int] = {}
     total = triangles = 0
@@ -146,9 +142,8 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
         rows = slice(triangles, triangles := triangles + len(corners))
         drawn.append((primitive, start[key], rows))
         faces.append(corners + start[key])
-    if not drawn:
-        return np.zeros((0, 3)), np.zeros((0, 3), int), drawn
-    return np.concatenate(vertices), np.concatenate(faces), drawn
+    document.triangles[mesh] = np.concatenate(vertices), np.concatenate(faces), drawn
+    return document.triangles[mesh]
 
 
 def influence_sets(named: dict[str, Any]) -> list[int]:

@@ -232,22 +232,13 @@ def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     if not np.isfinite(positions).all():
         raise FileError("a joint has no finite rest position")
     names = _names(nodes, bind)
-    orientations = _nearest_orthogonal(at_rest[:, :3, :3])
-    return Skeleton(positions, np.array(parents), names, orientations=orientations)  # type: ignore[arg-type]
+    left, _, right = np.linalg.svd(np.nan_to_num(at_rest[:, :3, :3]))  # without scale and shear
+    return Skeleton(positions, np.array(parents), names, orientations=left @ right)  # type: ignore[arg-type]
 
 
 def _names(nodes: Nodes, bind: Bind) -> tuple[str, ...]:
-    return unique_names([nodes.raw[node].get("name") for node in bind.nodes])
-
-
-def _nearest_orthogonal(linear: NDArray) -> NDArray:
-    """Take scale and shear out of matrices (j, 3, 3): the orthogonal factor of each."""
-    left, _, right = np.linalg.svd(np.nan_to_num(linear))
-    return left @ right
-
-
-def unique_names(names: list) -> tuple[str, ...]:
-    """Name the unnamed after their number and number those that are named alike."""
+    """Name unnamed joints after their number and number those that are named alike."""
+    names = [nodes.raw[node].get("name") for node in bind.nodes]
     originals = [n if isinstance(n, str) and n else f"joint {i}" for i, n in enumerate(names)]
     reserved = set(originals)
     assigned: set[str] = set()

@@ -59,11 +59,7 @@ def _edited(stored: StoredFaces, kept: NDArray, turned: NDArray, ends: NDArray) 
 
 
 def take_faces(document: dict[str, Any], rig: Rig) -> list[NewValues]:
-    """Take the indices of primitives whose faces changed out of a document, to be replaced.
-
-    Normals of vertices that only turned faces use are replaced as well, if they look against
-    these.
-    """
+    """Take indices of primitives whose faces changed, and their normals, out of a document."""
     source: GltfSource = rig.source
     replaced: list[NewValues] = []
     for stored in source.faces:

@@ -51,7 +51,11 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     frame_shifts[source.nodes] = by
     shifts = node_shifts(nodes.local, nodes.parents, frame_shifts)
     for i in np.flatnonzero(shifts.any(axis=1)).tolist():
-        _shift(document["nodes"][i], shifts[i])
+        node = document["nodes"][i]
+        if "matrix" in node:
+            node["matrix"][12:15] = np.add(node["matrix"][12:15], shifts[i]).tolist()
+        else:
+            node["translation"] = np.add(node.get("translation", [0, 0, 0]), shifts[i]).tolist()
     replaced = _binds(document, source.document, frame_shifts, mended)
     return replaced + _translations(document, source.document, shifts)
 
@@ -83,14 +87,6 @@ def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
         if same not in stored:
             stored[same] = buffer.store(new.values, new.old, new.target)
         new.owner[new.key] = stored[same]
-
-
-def _shift(node: dict[str, Any], shift: NDArray[np.float64]) -> None:
-    if "matrix" in node:
-        place = np.add(node["matrix"][12:15], shift)
-        node["matrix"][12:15] = place.tolist()
-    else:
-        node["translation"] = np.add(node.get("translation", [0, 0, 0]), shift).tolist()
 
 
 def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:

@@ -28,7 +28,7 @@ from ..container import ENDINGS, Document, beside, json_bytes, pack_glb
 from ..influences import pack_influences, store_deform, store_influences, take_influences
 from ..read.read import GltfSource, StoredPart
 from .faces import take_faces
-from .influence_rows import StoredRows, store_changed_rows, stored_rows
+from .influence_rows import store_changed_rows, stored_rows
 from .moves import file_joints, store_values, take_moves
 from .structure import take_structure
 
@@ -43,10 +43,10 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     faces = take_faces(document, rig)
     parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped = [new.old for new in (*faces, *moves) if new.old is not None]
-    changed = []
+    changed, is_gltf = [], source.document.path.suffix.lower() in ENDINGS  # not FBX or USD
     for part, saved in zip(source.parts, parts, strict=True):
         _check_reachable(rig, saved)
-        rows = _kept_rows(rig, part, saved)
+        rows = stored_rows(rig, part, saved) if is_gltf else None
         if rows is None or not rows.is_same.all():
             primitives = [document["meshes"][m]["primitives"][k] for m, k in saved.primitives]
             old: dict[str, int] = {}
@@ -105,12 +105,6 @@ def _forget_settings(document: dict[str, Any]) -> None:
     extras = document["asset"].get("extras")
     if isinstance(extras, dict):
         extras.pop("cutcell", None)
-
-
-def _kept_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows | None:
-    """Return the stored weights of a part, None if its document was made of another format."""
-    is_gltf = rig.source.document.path.suffix.lower() in ENDINGS
-    return stored_rows(rig, part, saved) if is_gltf else None
 
 
 def _check_reachable(rig: Rig, part: StoredPart) -> None:
