@@ -80,10 +80,7 @@ SIDES = _set("l r left right")
 
 
 def words(name: str) -> list[str]:
-    """Split a joint's name into words in lower case, without name spaces and numbers.
-
-    `mixamorig:HeadTop_End_06` gives head, top, end. Of other scripts than Latin nothing remains.
-    """
+    """Split a name into Latin words in lower case: head, top, end of `mixamorig:HeadTop_End_06`."""
     return re.findall(r"[a-z]+", _spaced(name))
 
 

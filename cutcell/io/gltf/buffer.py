@@ -123,7 +123,7 @@ class BufferWriter:
         return self._added[-1][0]
 
     def finish(self) -> bytes:
-        """Return the one buffer of the document; what was dropped is left empty, or out at the end."""
+        """Return the one buffer of the document; what was dropped leaves empty shells."""
         data = self._repack()
         # Arrays come last, as they do when this document is loaded and written again.
         for view, content in chain(self._added, self._arrays.values()):
