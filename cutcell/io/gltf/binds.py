@@ -206,6 +206,7 @@ def _contradicts(
     return bool(stretch > STRETCH or (turn > TURN and shifts.max() <= ORIGIN))
 
 
+@np.errstate(over="ignore")  # the box may have no extent
 def rest_world(
     matrices: NDArray, shares: NDArray, topmost: NDArray | None, is_control: bool, corners: NDArray
 ) -> NDArray[np.float64]:
@@ -228,6 +229,7 @@ def rest_world(
     return topmost if apart(topmost[None], chosen, corners)[0] <= LEAN else chosen
 
 
+@np.errstate(over="ignore")
 def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.float64]:
     """Return the one of matrices (j, 4, 4) with which most shares (j,) agree in moving a box."""
     heaviest = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])

@@ -31,10 +31,7 @@ BINARY_CHUNK = 0x004E4942
 
 @dataclass(eq=False)
 class Document:
-    """A glTF document: its JSON untouched, and the bytes of its buffers.
-
-    `dataclasses.replace` makes one with empty caches, whose reading counts anew.
-    """
+    """A glTF document: its JSON untouched, and its buffers; `replace` makes one without caches."""
 
     path: Path
     json: dict[str, Any]

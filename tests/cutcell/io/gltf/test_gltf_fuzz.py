@@ -2,7 +2,7 @@
 
 import json
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -87,6 +87,7 @@ ODD = st.sampled_from(
         st.tuples(st.sampled_from(list(json_paths(DOCUMENT))[1:]), ODD), min_size=1, max_size=3
     )
 )
+@example([(("nodes", 1, "translation", 0), -1), (("meshes", 0, "primitives", 0, "mode"), None)])
 def test_odd_fields_never_escape_as_anything_else(tmp_path, changes):
     document = json.loads(json.dumps(DOCUMENT))
     for path, value in changes:
