@@ -156,13 +156,9 @@ def inside_intervals(
 def _chunks(
     hits: RayHits, beyond_hits: NDArray[np.int32], resolution: int
 ) -> list[NDArray[np.intp]]:
-    """Divide the rays that may be inside into chunks of at most about CHUNK segments."""
-    first, last = beyond_hits.T
-    count = np.diff(hits.start)
-    size = np.where(count > 0, count + resolution, np.maximum(last - first + 1, 0))
-    rays = np.flatnonzero(size)
-    total = np.cumsum(size[rays])
-    return np.split(rays, np.searchsorted(total, np.arange(CHUNK, total[-1:].sum(), CHUNK)))
+    """Divide the rays that may be inside into chunks of about CHUNK segments at most."""
+    rays = np.flatnonzero((np.diff(hits.start) > 0) | (beyond_hits[:, 0] <= beyond_hits[:, 1]))
+    return np.split(rays, range(CHUNK // resolution, len(rays), CHUNK // resolution))
 
 
 def divide_rays(
@@ -192,21 +188,20 @@ def _divide(start, position, resolution, rays, beyond_hits):
     s = 0
     for r in rays:
         begin, end = start[r], start[r + 1]
+        first, last = max(1, beyond_hits[r, 0]), 0  # what ends at a wall is outside
         for c in range(begin, end + 1):
-            first, last, least, most = 0, resolution, 1, resolution - 1  # a wall is outside
-            if c > begin:
-                first = least = first_at_least(position[c - 1], resolution)
-            else:
-                least = max(least, beyond_hits[r, 0])
             if c < end:
-                last = most = first_at_least(position[c], resolution)
+                last = first_at_least(position[c], resolution)
             else:
-                most = min(most, beyond_hits[r, 1])
-            for k in range(least, most + 1):
-                is_first, is_last = c > begin and k == first, c < end and k == last
-                low = position[c - 1] if is_first else (k - 0.5) / resolution
+                last = min(resolution - 1, beyond_hits[r, 1])
+            low = position[c - 1] if c > begin else (first - 0.5) / resolution
+            for k in range(first, last + 1):
+                is_last = c < end and k == last
                 high = position[c] if is_last else (k + 0.5) / resolution
                 ray[s], gap[s], number[s] = r, c, k
-                from_hit[s], to_hit[s], middle[s] = is_first, is_last, 0.5 * (low + high)
+                from_hit[s], to_hit[s] = c > begin and k == first, is_last
+                middle[s] = 0.5 * (low + high)
+                low = high
                 s += 1
+            first = last
     return ray[:s], gap[:s], number[:s], from_hit[:s], to_hit[:s], middle[:s]

@@ -40,7 +40,6 @@ from .expansion import (
     translate,
     variation,
 )
-from .solid_angles import WORKSPACE
 
 BLOCK = 8
 """Cells along the side of the blocks that are either constant or classified cell by cell."""
@@ -139,7 +138,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     # For each ancestor of the current block: its centre, far expansion and near clusters.
     centre, far, local = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
     near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
-    near[0, 0], points = ROOT, np.empty(WORKSPACE)
+    near[0, 0] = ROOT
     while count:
         count -= 1
         x, y, z, size, depth = waiting[count]
@@ -156,7 +155,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, TOLERANCE, points)
+        add_clusters(clusters, close, local, q, reach, TOLERANCE)
         cell_class = _class_of(local, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
         if size >= BLOCK and cell_class < 0:

@@ -27,7 +27,6 @@ from ....geometry.vectors import between, cross, dot, length, segment_fraction, 
 from ....runtime.compiled import compiled, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
-from .solid_angles import VALUE, Y, Z, add_arguments, add_cap, clear
 
 SIZE = 10
 ERROR = SIZE - 1
@@ -38,6 +37,8 @@ ROUNDING = 1e-9
 """Beyond the error bound, for rounding."""
 COARSE = 0.3
 """Near clusters of a larger error are split, to see if parts of them are far."""
+SMALL = 1e-60
+"""Products are rescaled below this, and above its inverse, before they under- or overflow."""
 USELESS = 0.5
 """With a larger error an expansion decides nothing."""
 
@@ -112,15 +113,9 @@ def add_far_clusters(clusters, among, local, near, q, reach):
 
 
 @no_refcount
-def add_clusters(clusters, among, local, q, reach, tolerance, points):
-    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless.
-
-    `points` is a workspace.
-    """
-    leaves, unscaled = len(clusters.start) - 1, np.int64(0)
-    count = np.int64(1)  # a literal has another type, compiled anew
-    points[0], points[Y], points[Z] = q
-    clear(points, count)
+def add_clusters(clusters, among, local, q, reach, tolerance):
+    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless."""
+    leaves = len(clusters.start) - 1
     for top in among:
         k, end = top, next_cluster(top)
         while k != end:
@@ -138,12 +133,37 @@ def add_clusters(clusters, among, local, q, reach, tolerance, points):
                     _add_gradient(local, rim, clusters.apex[loop], q, reach, error == np.inf)
                     if local[ERROR] > USELESS:
                         return
-                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    local[0] += _winding_number(rim, clusters.apex[loop], q)
             if local[ERROR] > USELESS:
                 return
             k = next_cluster(k)
-    add_arguments(points, count)
-    local[0] += points[VALUE]
+
+
+@no_refcount
+def _winding_number(rim, apex, q):
+    """Return the winding number of one cap at q: `solid_angles.add_cap` at a single point."""
+    x, y, turns = 1.0, 0.0, 0.0
+    # Where the apex is the rim's first vertex, the edges at it span no triangle.
+    begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
+    c = between(q, apex)
+    b = between(q, rim[begin - 1])
+    lc, lb = length(c), length(b)
+    for e in range(begin, end):
+        a = between(q, rim[e] if e < len(rim) else rim[0])
+        la = length(a)
+        triple = dot(a, cross(b, c))
+        rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+        was, y = y, x * triple + y * rest
+        x = x * rest - was * triple
+        if was >= 0 and triple >= 0 and y < 0:
+            turns += 1
+        elif was < 0 and triple < 0 and y >= 0:
+            turns -= 1
+        size = abs(x) + abs(y)
+        if 0 < size < SMALL or size > 1 / SMALL:
+            x, y = x / size, y / size
+        b, lb = a, la
+    return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
 @compiled(inline="always")

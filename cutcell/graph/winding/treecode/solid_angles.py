@@ -36,7 +36,9 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, np.int64(0)
-    clear(points, count)
+    for i in range(count):
+        points[VALUE + i] = points[IM + i] = 0.0
+        points[RE + i] = points[CLEAR + i] = 1.0
     for top in among:
         k, end = top, next_cluster(top)
         while k != end:
@@ -51,25 +53,11 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    unscaled = _add_cap(rim, clusters.apex[loop], points, count, unscaled)
             k = next_cluster(k)
-    add_arguments(points, count)
-    return error
-
-
-@no_refcount
-def clear(points, count):
-    """Begin the sums of some points."""
-    for i in range(count):
-        points[VALUE + i] = points[IM + i] = 0.0
-        points[RE + i] = points[CLEAR + i] = 1.0
-
-
-@no_refcount
-def add_arguments(points, count):
-    """End the sums of some points: add the arguments of the complex numbers."""
     for i in range(count):
         points[VALUE + i] += np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
+    return error
 
 
 @vectorized
@@ -86,7 +74,7 @@ def _add_cluster(moments, sphere, points, count):
 
 
 @no_refcount
-def add_cap(rim, apex, points, count, unscaled):
+def _add_cap(rim, apex, points, count, unscaled):
     """Add the solid angles of one cap.
 
     Half the solid angle of a triangle is the argument of a complex number (van Oosterom &

@@ -50,7 +50,7 @@ class TreecodeWindingNumbers:
     ) -> None:
         self._surface, self._threshold = surface, winding_threshold
         self._crossings = [
-            np.append(np.int32(0), np.cumsum(along.sign, dtype=np.int32)) for along in hits
+            np.append(0.0, np.cumsum(along.sign, dtype=np.float64)) for along in hits
         ]
         self._hits = hits
         caps = smallest_caps(surface.vertices, surface.boundary)
@@ -73,10 +73,11 @@ class TreecodeWindingNumbers:
         last = BLOCK * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
         is_outside = ~may_be_inside.any(axis=2)
         first[is_outside], last[is_outside] = resolution, NONE
-        block = np.arange(resolution) // BLOCK
-        points = np.stack([first, last], axis=2)[np.ix_(block, block)].reshape(-1, 2)
-        points[np.diff(self._cap_hits[axis].start) > 0] = 0, resolution
-        return points.astype(np.int32)
+        ends = np.stack([first, last], axis=2).astype(np.int32)
+        points = ends.repeat(BLOCK, axis=0)[:resolution].repeat(BLOCK, axis=1)[:, :resolution]
+        points = points.reshape(-1, 2)
+        points[np.flatnonzero(np.diff(self._cap_hits[axis].start))] = 0, resolution
+        return points
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
         """Return numbers, shape (s,), that are at least tau exactly where the winding number is.
@@ -86,7 +87,7 @@ class TreecodeWindingNumbers:
         axis, ray, gap = segments.axis, segments.ray, segments.gap
         start, crossings = self._hits[axis].start, self._crossings[axis]
         if self._surface.is_closed:
-            return (crossings[start[ray + 1]] - crossings[gap]).astype(np.float64)
+            return crossings[start[1:]].take(ray) - crossings.take(gap)
         caps = self._cap_hits[axis]
         w, row = _by_class(
             (axis, segments.resolution, ray, gap, segments.middle),
@@ -102,8 +103,9 @@ class TreecodeWindingNumbers:
             self._classes.expansions, self._clusters, row[query], segments.midpoints(query), margin
         )
         left = query[np.isnan(w[query])]
-        ahead = crossings[start[ray[left] + 1]] - crossings[gap[left]]
-        w[left] = ahead + self._boundary_angles(axis, segments.midpoints(left))
+        if len(left):
+            ahead = crossings[start[ray[left] + 1]] - crossings[gap[left]]
+            w[left] = ahead + self._boundary_angles(axis, segments.midpoints(left))
         return w
 
     def _boundary_angles(self, axis: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
