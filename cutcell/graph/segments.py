@@ -20,7 +20,7 @@ from .rays import RayHits, first_at_least, points_on_rays
 from .surface import Surface
 
 NONE = -1
-CHUNK = 2**17
+CHUNK = 2**18
 """Segments that are divided and decided together."""
 
 

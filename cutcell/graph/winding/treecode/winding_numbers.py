@@ -126,23 +126,24 @@ def _by_class(segments, hits, cap_hits, coarse, fine, tau):
     end, crossings = hits
     start, position, sign = cap_hits
     w, row = np.empty(len(ray)), np.empty(len(ray), np.int32)
-    i = j = cap = caps_ahead = 0
+    i = j = cap = last_cap = 0
+    total = 0.0
     for s in range(len(ray)):
         r = ray[s]
         if s == 0 or r != ray[s - 1]:
             i, j = r // resolution, r % resolution
-            cap, caps_ahead = start[r], 0
-            for c in range(start[r], start[r + 1]):
-                caps_ahead += sign[c]
-        while cap < start[r + 1] and position[cap] <= middle[s]:
-            caps_ahead -= sign[cap]
+            cap, last_cap, total = start[r], start[r + 1], crossings[end[r + 1]]
+            for c in range(cap, last_cap):
+                total += sign[c]
+        while cap < last_cap and position[cap] <= middle[s]:
+            total -= sign[cap]
             cap += 1
         cell = min(int(middle[s] * resolution), resolution - 1)
         x, y, z = in_space(axis, i, j, cell)
         cell_class = coarse[x >> BITS, y >> BITS, z >> BITS]
         if cell_class >= 0:
             cell_class = fine[cell_class, x % BLOCK, y % BLOCK, z % BLOCK]
-        ahead = crossings[end[r + 1]] - crossings[gap[s]] + caps_ahead
+        ahead = total - crossings[gap[s]]
         if cell_class < 0:
             w[s], row[s] = tau + (ahead + CONSTANT - cell_class), DECIDED
         else:
