@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 
 from cutcell import ParameterError, TriangleMesh
 from cutcell.graph import Lattice
-from cutcell.graph.ray_tracers import CASTERS
+from cutcell.graph.libraries import CASTERS, fast_winding_numbers
 from cutcell.graph.rays import AXES, cast_rays, points_on_rays
 from cutcell.graph.segments import divide_rays
 from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.exact import WindingNumbers
-from cutcell.graph.winding.libigl import fast_winding_numbers
 from cutcell.method import check_resolution
 from cutcell.rig.checks import check_choice, check_integer, check_number
 
@@ -165,7 +164,7 @@ def slice_rays(
     if winding == "exact":
         at_middle = WindingNumbers(surface.vertices, surface.faces).at(middle)
     else:
-        at_middle = fast_winding_numbers(surface, middle)
+        at_middle = fast_winding_numbers(surface.vertices, surface.faces, middle)
     ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))
     in_slice = np.isin(ray, numbers)
     return RaySlice(

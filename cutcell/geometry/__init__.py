@@ -1,1 +1,1 @@
-"""Primitives of triangle meshes: edges, welding, normals, Laplacian, union-find."""
+"""Primitives of triangle meshes: edges, welding, normals, Laplacian, orders."""

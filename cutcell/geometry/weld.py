@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
-from .union_find import labels, union
 from .vectors import between, dot
 
 WELD_TOLERANCE = 1e-6
@@ -31,41 +30,24 @@ def weld(
     x, y, z = points.T
     projection = OBLIQUE[0] * x + OBLIQUE[1] * y + OBLIQUE[2] * z
     order = np.argsort(projection)
+    is_tie = np.append(np.diff(projection[order]) == 0, np.False_)
+    tied = np.flatnonzero(is_tie | np.roll(is_tie, 1))
+    ties = order[tied]
+    order[tied] = ties[np.lexsort((z[ties], y[ties], x[ties], projection[ties]))]
     projection, ordered = projection[order], points[order]
-    _sort_ties(projection, ordered, order)
     # Rounding changes a projection by less than this; per point, so that one outlier far away
     # does not widen the search for all.
     slack = tolerance + 8 * np.finfo(float).eps * np.abs(ordered).max(axis=1, initial=0)
-    welded, group = _merge(projection, ordered, tolerance, slack)
+    first = _merge(projection, ordered, tolerance, slack)
+    is_first = first == np.arange(len(points))
     index = np.empty(len(points), np.int32)
-    index[order] = group
-    return welded, index
-
-
-@compiled
-def _sort_ties(projection, points, order):
-    """Sort points with equal projections by their coordinates."""
-    for i in range(1, len(projection)):
-        k = i
-        while k > 0 and projection[k - 1] == projection[k] and _precedes(points[k], points[k - 1]):
-            for axis in range(3):
-                points[k, axis], points[k - 1, axis] = points[k - 1, axis], points[k, axis]
-            order[k], order[k - 1] = order[k - 1], order[k]
-            k -= 1
-
-
-@compiled(inline="always")
-def _precedes(a, b):
-    if a[0] != b[0]:
-        return a[0] < b[0]
-    if a[1] != b[1]:
-        return a[1] < b[1]
-    return a[2] < b[2]
+    index[order] = (np.cumsum(is_first) - 1)[first]
+    return ordered[is_first], index
 
 
 @compiled
 def _merge(projection, points, tolerance, slack):
-    """Return the first point of each group, and the group of each point."""
+    """Return the first point of each point's group (disjoint sets, Tarjan 1975), shape (n,)."""
     count = len(points)
     first = np.arange(count)
     for i in range(count):
@@ -74,9 +56,20 @@ def _merge(projection, points, tolerance, slack):
             displacement = between(points[i], points[j])
             squared = dot(displacement, displacement)
             if squared <= tolerance * tolerance:
-                union(first, i, j)
+                a, b = _find(first, i), _find(first, j)
+                first[max(a, b)] = min(a, b)
             if squared == 0:  # j lies at the same point and will meet whatever follows
                 break
             j += 1
-    group, lowest = labels(first)
-    return points[lowest], group
+    for i in range(count):
+        first[i] = first[first[i]]  # those before are final
+    return first
+
+
+@compiled(inline="always")
+def _find(first, i):
+    """Return the first member of the set of i; each entry is of the same set, no later."""
+    while first[i] != i:
+        first[i] = first[first[i]]
+        i = first[i]
+    return i

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled, copy_to
+from ..geometry.vectors import between, length
+from ..runtime.compiled import no_refcount
 from ..runtime.threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, fill_edges, lattice_steps
@@ -58,7 +59,9 @@ def assemble(
         _fill_surface(resolution, AXES[axis], along, mesh, first, nodes, triangle, edges, lengths)
 
     def fill_rest(_: int) -> None:
-        _fill_mesh(vertices, mesh_edges, nodes, edges, lengths)
+        first_inside = len(mesh_edges)
+        nodes[: len(vertices)], edges[:first_inside] = vertices, mesh_edges
+        lengths[:first_inside] = np.linalg.norm(np.subtract(*vertices[mesh_edges.T]), axis=1)
         points.put_positions(nodes[len(vertices) : first_surface])
 
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
@@ -104,16 +107,7 @@ def _number_ends(
     return node
 
 
-@compiled
-def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
-    copy_to(vertices.reshape(-1), nodes.reshape(-1))
-    for e in range(len(mesh_edges)):
-        a, b = mesh_edges[e, 0], mesh_edges[e, 1]
-        edges[e, 0], edges[e, 1] = a, b
-        lengths[e] = _distance(vertices, a, vertices, b)
-
-
-@compiled
+@no_refcount
 def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, lengths):
     """Fill in the surface nodes along one axis, and their edges to the corners of triangles."""
     u, v, along = axes
@@ -133,10 +127,4 @@ def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, l
                 e = first_edge + 3 * (n - first_surface) + k
                 corner = faces[of_triangle[c], k]
                 edges[e, 0], edges[e, 1] = n, corner
-                lengths[e] = _distance(nodes, n, vertices, corner)
-
-
-@compiled(inline="always")
-def _distance(a, i, b, j):
-    x, y, z = a[i, 0] - b[j, 0], a[i, 1] - b[j, 1], a[i, 2] - b[j, 2]
-    return np.sqrt(x * x + y * y + z * z)
+                lengths[e] = length(between(nodes[n], vertices[corner]))

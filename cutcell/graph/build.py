@@ -13,12 +13,11 @@ from ..runtime.threads import cancellable
 from .assemble import assemble
 from .cutcell_graph import CutCellGraph
 from .fingerprint import graph_fingerprint
+from .libraries import CASTERS, fast_winding_numbers
 from .memory import check_hits
-from .ray_tracers import CASTERS
 from .rays import cast_all_rays
 from .segments import PointwiseWindingNumbers, RayWindingNumbers, inside_intervals
 from .surface import prepare_surface
-from .winding.libigl import fast_winding_numbers
 from .winding.treecode.winding_numbers import TreecodeWindingNumbers
 
 
@@ -98,7 +97,8 @@ def build_graph(
                 surface, hits, tau, share_of(report, 0.2, 0.45)
             )
         else:
-            numbers = PointwiseWindingNumbers(surface, partial(fast_winding_numbers, surface))
+            fast = partial(fast_winding_numbers, surface.vertices, surface.faces)
+            numbers = PointwiseWindingNumbers(surface, fast)
         # Hits and lattice points divide the rays into segments. Those whose midpoint has a winding
         # number of at least tau are kept.
         inside = inside_intervals(hits, tau, numbers, resolution, share_of(report, 0.45, 0.9))

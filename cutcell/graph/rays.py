@@ -15,9 +15,7 @@ before v in the order x, y, z, so they are perturbed consistently.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,16 +23,11 @@ from numpy.typing import NDArray
 from ..geometry.vectors import triangle_normal
 from ..runtime.compiled import compiled, copy_to
 from ..runtime.progress import Tell
-from ..runtime.threads import in_threads, threads
+from ..runtime.threads import in_threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
-STRIPS = 4
-"""Strips of columns for each axis, at most one a thread, unless there is more work than
-`STRIP_WORK` in each."""
-STRIP_WORK = 2_000_000
-"""Hits that take about a tenth of a second."""
 MANY_HITS = 64
 """Rays with more hits are sorted by numpy."""
 
@@ -69,7 +62,16 @@ def cast_rays(
 
     Shapes: vertices (n, 3), faces (m, 3).
     """
-    return cast_all_rays(vertices, faces, resolution, axes=(axis,))[0]
+    projected = np.ascontiguousarray(vertices[:, AXES[axis]])
+    flip = -1 if axis == 1 else 1  # x cross z points along -y
+    counts, position, triangle, sign = _rasterise(projected, faces, resolution, flip)
+    start = np.append(0, np.cumsum(counts))
+    for ray in np.flatnonzero(counts > MANY_HITS):
+        hits = slice(start[ray], start[ray + 1])
+        order = np.lexsort((triangle[hits], sign[hits], position[hits]))
+        for column in (position, triangle, sign):
+            column[hits] = column[hits][order]
+    return RayHits(start, position, triangle, sign)
 
 
 def cast_all_rays(
@@ -77,39 +79,9 @@ def cast_all_rays(
     faces: NDArray[np.int32],
     resolution: int,
     report: Tell = lambda done: None,
-    axes: Sequence[int] = (0, 1, 2),
 ) -> list[RayHits]:
     """Cast the rays along x, y and z, see `cast_rays` and `progress.Tell`."""
-    if len(faces) == 0:  # the caps of a closed mesh
-        start = np.zeros(resolution * resolution + 1, np.int64)
-        nothing = RayHits(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
-        return [nothing] * len(axes)
-    # Strips of columns are rasterised in parallel.
-    work = expected_hits(vertices, faces, resolution)
-    count = min(max(min(STRIPS, threads()), int(work / STRIP_WORK)), resolution)
-    bounds = list(pairwise(k * resolution // count for k in range(count + 1)))
-    projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
-
-    def rasterise(strip: tuple[int, int, int]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        axis, first, last = strip
-        flip = -1 if axis == 1 else 1  # x cross z points along -y
-        columns = _rasterise(projected[axis], faces, resolution, flip, first, last)
-        counts, position, triangle, sign = columns
-        end = np.cumsum(counts)
-        for ray in np.flatnonzero(counts > MANY_HITS):
-            hits = slice(end[ray] - counts[ray], end[ray])
-            order = np.lexsort((triangle[hits], sign[hits], position[hits]))
-            for column in columns[1:]:
-                column[hits] = column[hits][order]
-        return columns
-
-    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], report)
-    hits = []
-    for k in range(len(axes)):
-        parts = zip(*strips[k * count : (k + 1) * count], strict=True)
-        counts, position, triangle, sign = (np.concatenate(part) for part in parts)
-        hits.append(RayHits(np.append(0, np.cumsum(counts)), position, triangle, sign))
-    return hits
+    return in_threads(lambda axis: cast_rays(vertices, faces, resolution, axis), range(3), report)
 
 
 def expected_hits(
@@ -145,20 +117,13 @@ def in_space(axis, u, v, along):
 
 
 @compiled
-def _rasterise(vertices, faces, resolution, flip, first, last):
-    """Rasterise the triangles on the columns first <= i < last.
-
-    Returns the number of hits of each ray; then position, triangle and sign of each hit, ray by
-    ray.
-    """
+def _rasterise(vertices, faces, resolution, flip):
+    """Return the number of hits of each ray; then position, triangle and sign, ray by ray."""
     at, hits, size = np.empty(256), np.empty((256, 3), np.int32), 0
     for f in range(len(faces)):
         u0, u1, u2 = vertices[faces[f, 0], 0], vertices[faces[f, 1], 0], vertices[faces[f, 2], 0]
-        if max(u0, u1, u2) * resolution < first or min(u0, u1, u2) * resolution > last:
-            continue
-        begin = max(first, first_at_least(min(u0, u1, u2), resolution))
-        end = min(last, first_at_least(max(u0, u1, u2), resolution))
-        for i in range(begin, end):
+        end = min(resolution, first_at_least(max(u0, u1, u2), resolution))
+        for i in range(first_at_least(min(u0, u1, u2), resolution), end):
             pu = (i + 0.5) / resolution
             low_v, low_a, high_v, high_a, side = column_span(vertices, faces, f, pu)
             j = first_at_least(low_v, resolution)
@@ -167,11 +132,11 @@ def _rasterise(vertices, faces, resolution, flip, first, last):
                     at, hits = grown(at), grown(hits)
                 pv = (j + 0.5) / resolution
                 at[size] = height_between(low_v, low_a, high_v, high_a, pv)
-                hits[size, 0] = (i - first) * resolution + j
+                hits[size, 0] = i * resolution + j
                 hits[size, 1], hits[size, 2] = f, flip * side
                 size += 1
                 j += 1
-    return _by_ray(at[:size], hits[:size], (last - first) * resolution)
+    return _by_ray(at[:size], hits[:size], resolution * resolution)
 
 
 @compiled

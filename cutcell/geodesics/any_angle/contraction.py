@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.counting_sort import counting_sort, spatial_order
+from ...geometry.sorting import sort_by_group, spatial_order
 from ...graph import INTERIOR, SURFACE, CutCellGraph
 from ...graph.inside_edges import lattice_steps
 from ...graph.interior import OUTSIDE
@@ -140,7 +140,7 @@ def _contract(
     kept_edges = np.empty_like(edges)
     count = _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges)
     # Kept nodes are below 0 here, and left out.
-    start, order = counting_sort(representative[first_surface:] - mesh, len(block))
+    start, order = sort_by_group(representative[first_surface:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count)
     indptr, indices, _ = list_neighbours(kept_edges[:count], np.empty(0), len(node))
     return indptr, indices, nodes[node], node, number, int(np.searchsorted(node, first_surface))

@@ -50,8 +50,10 @@ def exposure(
     face, points = _samples(vertices, faces, patch, is_measured)
     normals = unit_normals(vertices[faces[face]])
     of = patch[face]
-    single, index = _each_once(faces)
-    own_face = index[face]
+    # Distinct faces hide as much.
+    corners = np.sort(faces, axis=1)
+    _, first, index = np.unique(corners, axis=0, return_index=True, return_inverse=True)
+    single, own_face = faces[first], index.ravel()[face]
 
     def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
         rotated = [_rotated(x, turn) for x in (vertices, points)]
@@ -71,17 +73,6 @@ def _rotated(points: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[
     """Rotate points (n, 3) in the unit cube; unlike BLAS, every processor rounds this alike."""
     x, y, z = points.T - 0.5
     return np.stack([a * x + b * y + c * z for a, b, c in turn], axis=1) / SHRINK + 0.5
-
-
-def _each_once(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
-    """Return the distinct faces, which hide as much, and the index of each face in them."""
-    corners = np.sort(faces, axis=1)
-    order = np.lexsort(corners.T)
-    is_new = np.ones(len(faces), np.bool_)
-    is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
-    index = np.empty(len(faces), np.intp)
-    index[order] = np.cumsum(is_new) - 1
-    return faces[order[is_new]], index
 
 
 def _turns() -> list[NDArray[np.float64]]:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ParameterError
+from ...geometry.sorting import sort_by_group
 from ...geometry.weld import weld
 from ...rig import TriangleMesh
 from ...runtime.compiled import compiled, no_refcount
@@ -99,22 +100,13 @@ def _bin_faces(vertices, faces):
     corners = vertices[faces][:, :, :2]
     low = np.clip((corners.min(axis=1) * cells).astype(np.int64), 0, cells - 1)
     high = np.clip((corners.max(axis=1) * cells).astype(np.int64), 0, cells - 1)
-    counts = np.zeros(cells**2 + 1, np.int64)
-    _list_faces(low, high, cells, counts[1:], np.empty(0, np.int32))
-    start = np.cumsum(counts)
-    listed = np.empty(start[-1], np.int32)
-    _list_faces(low, high, cells, start[:-1].copy(), listed)
-    return cells, start, listed
-
-
-@compiled
-def _list_faces(low, high, cells, cursor, listed):
-    for f in range(len(low)):
-        for i in range(low[f, 0], high[f, 0] + 1):
-            for j in range(low[f, 1], high[f, 1] + 1):
-                if len(listed):
-                    listed[cursor[i * cells + j]] = f
-                cursor[i * cells + j] += 1
+    size = high - low + 1
+    count = size.prod(axis=1)
+    face = np.repeat(np.arange(len(faces), dtype=np.int32), count)
+    k = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
+    cell = (low[face, 0] + k // size[face, 1]) * cells + low[face, 1] + k % size[face, 1]
+    start, order = sort_by_group(cell, cells**2)
+    return cells, start, face[order]
 
 
 @compiled

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ...geodesics import Bones
-from ...geometry.union_find import labels, union
+from ...geometry.sorting import sort_by_group
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads
 
@@ -20,14 +22,13 @@ INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 
 
-@compiled
-def label_components(faces, count):
+def label_components(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
     """Return the connected component of each of `count` welded vertices, numbered from 0."""
-    first = np.arange(count)
-    for f in range(len(faces)):
-        low = union(first, faces[f, 0], faces[f, 1])
-        union(first, low, faces[f, 2])
-    return labels(first)[0]
+    a, b, c = faces.T
+    ends = np.concatenate([a, a]), np.concatenate([b, c])
+    graph = coo_array((np.ones(2 * len(faces), np.bool_), ends), shape=(count, count))
+    component: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return component
 
 
 def longest_sides(points: NDArray[np.float64], component: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -82,8 +83,7 @@ def _intersect(
     """
     cell = np.clip((samples[:, :2] * CELLS).astype(np.int64), 0, CELLS - 1)
     column = cell[:, 0] * CELLS + cell[:, 1]
-    order = np.argsort(column, kind="stable")
-    start = np.searchsorted(column[order], np.arange(CELLS * CELLS + 1))
+    start, order = sort_by_group(column, CELLS * CELLS)
     samples = samples[order]
     room = 8 * len(samples)
     while True:

@@ -48,11 +48,13 @@ class SurfaceOperators:
         """Compute those of a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]  # the others were welded to nothing
-        return cls(points, faces, *_operators(points, faces))
+        normals, areas, rows = _operators(points, faces)
+        component = label_components(faces, len(points))
+        return cls(points, faces, normals, areas, component, rows)
 
 
 # One compiled function: each call from another thread has to wait for Python's lock.
 @compiled
 def _operators(points, faces):
     normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
-    return normals, areas, label_components(faces, len(points)), stiffness(points, faces)
+    return normals, areas, stiffness(points, faces)

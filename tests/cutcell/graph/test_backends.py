@@ -8,12 +8,11 @@ import pytest
 
 from cutcell import MissingLibraryError, TriangleMesh
 from cutcell.geometry.weld import weld
-from cutcell.graph import ray_tracers
+from cutcell.graph import libraries
 from cutcell.graph.rays import AXES, cast_all_rays, cast_rays
 from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.exact import WindingNumbers
-from cutcell.graph.winding.libigl import fast_winding_numbers
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -23,10 +22,10 @@ FLOAT32 = 2e-6
 
 def open3d_rays(*arguments):
     pytest.importorskip("open3d", reason="Open3D is not installed", exc_type=ImportError)
-    return ray_tracers.cast_rays_open3d(*arguments)
+    return libraries.cast_rays_open3d(*arguments)
 
 
-CASTERS = {"open3d": open3d_rays, "embree": ray_tracers.cast_rays_embree}
+CASTERS = {"open3d": open3d_rays, "embree": libraries.cast_rays_embree}
 
 
 def turned(vertices, faces):
@@ -122,7 +121,8 @@ def intervals(surface, hits, tau, function):
 
 def fast_intervals(surface, hits, tau):
     """Return the intervals inside by libigl's winding numbers."""
-    return intervals(surface, hits, tau, partial(fast_winding_numbers, surface))
+    fast = partial(libraries.fast_winding_numbers, surface.vertices, surface.faces)
+    return intervals(surface, hits, tau, fast)
 
 
 def both_runs(mesh, tau):
@@ -162,8 +162,8 @@ def test_rays_that_meet_nothing_have_no_runs():
 @pytest.mark.parametrize(
     ("call", "module", "package"),
     [
-        (ray_tracers.cast_rays_open3d, "open3d", "pip install open3d"),
-        (ray_tracers.cast_rays_embree, "embreex.rtcore_scene", "pip install embreex"),
+        (libraries.cast_rays_open3d, "open3d", "pip install open3d"),
+        (libraries.cast_rays_embree, "embreex.rtcore_scene", "pip install embreex"),
     ],
 )
 def test_a_missing_package_is_named(monkeypatch, call, module, package):
@@ -190,6 +190,6 @@ def test_a_missing_system_library_is_named(monkeypatch, message, advice):
     def fail(name):
         raise OSError(message)
 
-    monkeypatch.setattr(ray_tracers, "import_module", fail)
+    monkeypatch.setattr(libraries, "import_module", fail)
     with pytest.raises(MissingLibraryError, match=advice):
-        ray_tracers.cast_rays_open3d(*meshes.box(), 4, 0)
+        libraries.cast_rays_open3d(*meshes.box(), 4, 0)

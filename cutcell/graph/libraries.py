@@ -1,7 +1,8 @@
-"""The same ray hits by ray tracers: Embree and Open3D.
+"""Ray hits by Embree and Open3D, and winding numbers by libigl, for comparison.
 
-Cross-checks of `rays.py`. Both compute in float32, so rays within about 1e-6 of an edge may have
-other hits than the default, which is exact.
+Both ray tracers compute in float32, so rays within about 1e-6 of an edge may have other hits than
+those of `rays.py`. libigl's fast winding number is a truncated series: segments whose number is
+within about 1e-2 of tau may be decided otherwise.
 """
 
 from __future__ import annotations
@@ -79,6 +80,17 @@ def cast_rays_embree(vertices: Vertices, faces: Faces, resolution: int, axis: in
             origins[live, AXES[axis][2]] = ahead * direction
     ray, triangle = np.unique(np.concatenate(hits, axis=1), axis=1)
     return _ray_hits(vertices, faces, resolution, axis, ray, triangle)
+
+
+def fast_winding_numbers(
+    vertices: Vertices, faces: Faces, points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Approximate the winding number at points (k, 3) by libigl (Barill et al. 2018)."""
+    igl = optional_library("igl", 'winding="fast"', "libigl")
+    if len(points) == 0:
+        return np.empty(0)
+    numbers: NDArray[np.float64] = igl.fast_winding_number(vertices, faces.astype(np.int64), points)
+    return numbers
 
 
 CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
