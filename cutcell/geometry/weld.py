@@ -30,10 +30,9 @@ def weld(
     x, y, z = points.T
     projection = OBLIQUE[0] * x + OBLIQUE[1] * y + OBLIQUE[2] * z
     order = np.argsort(projection)
-    is_tie = np.append(np.diff(projection[order]) == 0, np.False_)
-    tied = np.flatnonzero(is_tie | np.roll(is_tie, 1))
-    ties = order[tied]
-    order[tied] = ties[np.lexsort((z[ties], y[ties], x[ties], projection[ties]))]
+    tied = np.flatnonzero(np.diff(projection[order]) == 0)
+    if (points[order[tied]] != points[order[tied + 1]]).any():
+        order = np.lexsort((z, y, x, projection))
     projection, ordered = projection[order], points[order]
     # Rounding changes a projection by less than this; per point, so that one outlier far away
     # does not widen the search for all.
