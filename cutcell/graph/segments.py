@@ -20,7 +20,7 @@ from .rays import RayHits, first_at_least, points_on_rays
 from .surface import Surface
 
 NONE = -1
-CHUNK = 2**18
+CHUNK = 2**19
 """Segments that are divided and decided together."""
 
 
