@@ -74,8 +74,7 @@ def test_every_panel_can_be_looked_at(after_a_rig, loop):
 @pytest.mark.parametrize("panel", [panel.id for panel in PANELS.values() if not panel.needs_audit])
 def test_a_panel_that_needs_no_skeleton_stays_and_shows_its_own_scene(bare, loop, panel):
     bare.state.panel = panel
-    loading.show_rig(bare, bare_arm())
-    loop.run_until(lambda: bare.state.bare_graph is not None)
+    show_bare(bare, loop)
     stays = PANELS[panel].works_without_skeleton
     assert bare.state.panel == (panel if stays else "graph")
     assert ("interior edges" in resolve(bare.state).actors) == (bare.state.panel == "graph")

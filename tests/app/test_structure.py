@@ -15,6 +15,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 ROOMS = (
+    {"editing"},
     {"jobs", "state", "server"},
     {"files", "scenes"},
     {"commands"},
