@@ -28,17 +28,18 @@ class Cluster:
 
         self._client, self.slots = client, slots
         self._done = as_completed(loop=client.loop)
-        self._pending = 0
+        self._keys: dict[str, str] = {}  # by name of the pending job
 
     def is_full(self) -> bool:
         """Return whether the workers have enough jobs."""
-        return self._pending >= AHEAD * max(1, sum(self._client.nthreads().values()))
+        return len(self._keys) >= AHEAD * max(1, sum(self._client.nthreads().values()))
 
     def submit(self, key: str, work: Callable[..., Any], *arguments: Any) -> None:
         """Begin a job; its arguments stay with the scheduler and survive a dead worker."""
-        future = self._client.submit(work, *arguments, key=f"cutcell-{key}", retries=0)
-        self._done.add(future)
-        self._pending += 1
+        # Another client of the scheduler may still hold a job of this key, or be releasing it.
+        name = f"cutcell-{key}-{self._client.id}"
+        self._keys[name] = key
+        self._done.add(self._client.submit(work, *arguments, key=name, retries=0))
 
     def scatter(self, blocks: list[Any]) -> list[Any]:
         """Send arguments of several jobs to the workers once."""
@@ -47,8 +48,7 @@ class Cluster:
     def next_result(self) -> tuple[str, Any]:
         """Wait for a job; return its key, and its result or the exception that it ended with."""
         future = next(self._done)
-        self._pending -= 1
-        key = future.key.removeprefix("cutcell-")
+        key = self._keys.pop(future.key)
         if future.status in ("cancelled", "lost") or self._client.status not in ("running",):
             raise CutcellError(
                 "the Dask scheduler was lost; what was done is kept. Run the same command again to "
