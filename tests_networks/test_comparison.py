@@ -6,8 +6,8 @@ import numpy as np
 from PIL import Image
 
 import cutcell
-from benchmarks import network_data
 from cutcell_assets.generate import generate
+from cutcell_lab.benchmarks import network_data
 from cutcell_lab.benchmarks.network_scores import dropped, groups, means, scores
 from cutcell_lab.benchmarks.networks import Run, main
 from cutcell_lab.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
