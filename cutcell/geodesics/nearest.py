@@ -69,8 +69,8 @@ class NodeTree:
 
     @cached_property
     def _cells(self) -> NDArray[np.int64]:
-        """The lattice cells that hold nodes, by their keys, ascending."""
-        return np.unique(self._keys(self._points))
+        """The key of the lattice cell of each node, ascending."""
+        return np.sort(self._keys(self._points))
 
     def _keys(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the key of the lattice cell of each point (p, 3)."""
