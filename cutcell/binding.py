@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from .geodesics import BoneDistances, bone_distances
 from .graph import CutCellGraph, build_graph
 from .method import Method
+from .pose.stretch import Stretch, measure_stretch
 from .rig import Rig
 from .runtime.repr import Summarized
 from .runtime.threads import submit
@@ -35,6 +37,11 @@ class Binding(Summarized):
         User-facing warnings.
     method : Method
         The method of the weights.
+
+    Attributes
+    ----------
+    stretch : Stretch
+        How much of the surface stretches as joints turn, and where.
     """
 
     weights: NDArray[np.float64]
@@ -43,6 +50,13 @@ class Binding(Summarized):
     seconds: dict[str, float]
     warnings: tuple[str, ...]
     method: Method
+
+    @cached_property
+    def stretch(self) -> Stretch:
+        """How much of the surface stretches as joints turn, and where."""
+        skeleton = self.distances.skeleton
+        assert skeleton is not None
+        return measure_stretch(self.graph, skeleton, self.weights)
 
     @property
     def _summary(self) -> dict[str, Any]:

@@ -1,4 +1,6 @@
-"""Every error a user can meet: each says what was wrong, where, and what to do."""
+"""Errors for users: each says what was wrong, where, and what to do. Warnings with a finding."""
+
+from typing import Self
 
 
 class CutcellError(ValueError):
@@ -45,3 +47,18 @@ def comes_from_ctrl_c(error: BaseException | None) -> bool:
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None
+
+
+class LocatedWarning(str):
+    """A warning about elements of a rig.
+
+    `code` is that of the finding of `cutcell.diagnose` that locates them.
+    """
+
+    code: str
+
+    def __new__(cls, text: str, code: str = "") -> Self:
+        """Return the text with a code."""
+        warning = super().__new__(cls, text)
+        warning.code = code
+        return warning

@@ -18,13 +18,11 @@ from .rig.checks import (
 Connectivity = Literal[6, 26, "any"]
 Leaf = Literal["point", "extend", "fit"]
 Falloff = Literal["rig", "paper"]
-Refine = Literal["none", "learned"]
 MethodName = Literal["animation", "paper"]
 
 CONNECTIVITIES: tuple[Connectivity, ...] = get_args(Connectivity)
 LEAVES: tuple[Leaf, ...] = get_args(Leaf)
 FALLOFFS: tuple[Falloff, ...] = get_args(Falloff)
-REFINES: tuple[Refine, ...] = get_args(Refine)
 
 MIN_RESOLUTION = 2
 MAX_RESOLUTION = 1024
@@ -38,6 +36,9 @@ ALPHA = 0.5
 RIG_JOINTS = 3
 """Nearest joints of each vertex that the falloff "rig" divides the surface among, at least: hardly
 a vertex has a fourth. It follows more joints only as the surface around it does."""
+PAPER_JOINTS = 8
+"""Nearest joints of each vertex that distances are measured from, at least, with the paper's
+falloff: a path leads through nodes that are nearer to others, and there it must not be dropped."""
 RIG_REACH = 6.0
 """Times as far as its nearest joint: whatever is farther gets no weight of the falloff "rig"."""
 
@@ -61,7 +62,6 @@ class WeightOptions(TypedDict, total=False):
     """Options of a `Method` that `skinning_weights` follows."""
 
     falloff: Falloff
-    refine: Refine
     alpha: float | None
     max_influences: int | None
     threshold: float
@@ -87,16 +87,6 @@ def _checked_alpha(alpha: Any, falloff: Falloff) -> float | None:
             "leave it out, or choose falloff='paper'"
         )
     return None
-
-
-def _checked_refine(refine: Any, falloff: Falloff) -> Refine:
-    refine = check_choice("refine", refine, REFINES)
-    if refine != "none" and falloff != "rig":
-        raise ParameterError(
-            f"refine={refine!r} has no effect with falloff={falloff!r}; "
-            "leave it out, or choose falloff='rig'"
-        )
-    return refine
 
 
 @dataclass(frozen=True)
@@ -129,9 +119,6 @@ class Method:
         "fit" with the falloff "rig", "point" with "paper".
     falloff : {"rig", "paper"}
         Decrease of weight with distance. "rig": for animation. "paper": equation 1.
-    refine : {"none", "learned"}
-        "learned": a small model that learned from rigs of many makers corrects the shares of the
-        falloff "rig" before they diffuse (docs/learned_weights.md).
     alpha : float, optional
         Smoothness of the paper's falloff, 0 to 1, 0.5 when left out; the other has none.
     max_influences : int, optional
@@ -157,7 +144,6 @@ class Method:
     samples: int = 5
     leaf: Leaf = None  # type: ignore[assignment]
     falloff: Falloff = "rig"
-    refine: Refine = "none"
     alpha: float | None = None
     max_influences: int | None = 4
     threshold: float = 0.0
@@ -173,7 +159,6 @@ class Method:
             "samples": check_integer("samples", self.samples, 1, MAX_SAMPLES),
             "leaf": check_choice("leaf", leaf, LEAVES),
             "falloff": falloff,
-            "refine": _checked_refine(self.refine, falloff),
             "alpha": _checked_alpha(self.alpha, falloff),
             "threshold": check_number("threshold", self.threshold, 0, 1),
         }
@@ -187,8 +172,7 @@ class Method:
     def with_options(self, **options: Any) -> Method:
         """Return this method with other options.
 
-        With another `falloff`, `leaf`, `refine` and `alpha` return to its defaults unless they are
-        given, too.
+        With another `falloff`, `leaf` and `alpha` return to its defaults unless given, too.
 
         Parameters
         ----------
@@ -202,14 +186,15 @@ class Method:
         ParameterError
             An option is out of its range, or has no effect.
         """
-        known = [field.name for field in fields(self)]
+        names = [field.name for field in fields(self)]
         for name in options:
-            if name not in known:
-                close = get_close_matches(name, known, n=1)
-                instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(known)}"
+            if name not in names:
+                close = get_close_matches(name, names, n=1)
+                instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(names)}"
                 raise TypeError(f"a method has no option {name!r}; {instead}")
-        if options.get("falloff", self.falloff) != self.falloff:
-            options = {"leaf": None, "refine": "none", "alpha": None, **options}
+        falloff = check_choice("falloff", options.get("falloff", self.falloff), FALLOFFS)
+        if falloff != self.falloff:
+            options = {"leaf": None, "alpha": None, **options}
         return replace(self, **options)
 
     @property
@@ -250,6 +235,6 @@ def method_of(method: Method | MethodName, resolution: int | None = None, **opti
 
 def joints_needed(falloff: Falloff, max_influences: int | None) -> int | None:
     """Return from how many nearest joints of each vertex a falloff needs distances."""
-    if falloff == "paper" or max_influences is None:
-        return max_influences
-    return RIG_JOINTS
+    if max_influences is None:
+        return None
+    return RIG_JOINTS if falloff == "rig" else max(max_influences, PAPER_JOINTS)

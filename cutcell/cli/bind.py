@@ -12,10 +12,10 @@ from ..errors import ParameterError
 from .console import for_people, print_result, progress_bars
 from .options import (
     Accessories,
-    CorrectionsFile,
     Deform,
     Fresh,
     Json,
+    LayersFile,
     Lock,
     NoDeform,
     Quiet,
@@ -25,13 +25,14 @@ from .options import (
     Symmetric,
     TemplateName,
     chosen_method,
+    layered_method,
     with_method,
 )
 from .report import described, report_rows
 
 if TYPE_CHECKING:
     from ..binding import Binding
-    from ..editing.corrections import Corrections
+    from ..editing import Edits
     from ..graph import CutCellGraph
     from ..method import Method
     from ..rig import Rig
@@ -52,7 +53,7 @@ EPILOG = """Examples:
 
 - `cutcell bind character.glb bound.glb --fresh --no-deform '*_IK' --deform Tail`  (other joints)
 
-- `cutcell bind character.glb bound.glb --corrections character.corrections.json`
+- `cutcell bind character.glb bound.glb --layers character.layers.json`  (edits of the page)
 
 - `cutcell bind body.obj bound.glb --skeleton rigged.fbx`  (the skeleton of another file)
 
@@ -83,7 +84,7 @@ def bind(
     deform: Deform = None,
     no_deform: NoDeform = None,
     fresh: Fresh = False,
-    corrections: CorrectionsFile = None,
+    layers: LayersFile = None,
     skeleton: SkeletonFile = None,
     accessories: Accessories = False,
     template: TemplateName = None,
@@ -97,17 +98,24 @@ def bind(
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
     from ..editing import bind as compute
-    from ..editing import corrected_rig
-    from ..editing.corrections import Corrections
+    from ..editing import edited_rig
+    from ..editing.refine import refinement
+    from ..editing.stored import (
+        load_edits,
+        save_bound,
+        settings_with_layers,
+        stored_edits,
+        with_base,
+    )
     from ..io import check_output, load, save, saving_notes
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
     from ..templates.fit import check_template
     from .summary import summarize_weights
 
-    how = chosen_method(options)
+    edits = None if layers is None else load_edits(layers)
+    how = chosen_method(options) if edits is None else layered_method(options, edits.method)
     touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
-    corrected = None if corrections is None else Corrections.load(corrections)
     fits = None if template is None else check_template(template)
     check_output(out)
     loaded, graph = load(rig, skeleton, accessories), None
@@ -115,24 +123,43 @@ def bind(
         if fits is not None:
             with progress_bars(quiet) as progress:
                 loaded, graph = _with_template(loaded, fits, how, progress)
-        if corrected is not None and not len(loaded.skeleton.joints):
-            loaded = corrected_rig(loaded, corrected)  # they may bring a skeleton
+        unused = stored_edits(loaded) if edits is None else None
+        if edits is not None:
+            loaded = with_base(loaded)
+            if not len(loaded.skeleton.joints):
+                loaded = edited_rig(loaded, edits)  # they may bring a skeleton
         loaded.require_joints()
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
-        if corrected is not None:
-            loaded = corrected_rig(loaded, corrected)
+        if edits is not None:
+            loaded = edited_rig(loaded, edits)
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
         binding = compute(
-            loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
+            loaded,
+            how.resolution if edits is not None and "resolution" in edits.method else None,
+            method=how,
+            **touches,
+            edits=edits,
+            graph=graph,
+            progress=progress,
         )
     dropped: list[str] = []
     is_open = options["max_influences"] is None and how.max_influences is None
     if is_open and out.suffix.lower() in GLTF:
-        binding, dropped = _limited(loaded, binding, corrected, touches)
+        binding, dropped = _limited(loaded, binding, edits, touches)
         how = how.with_options(max_influences=GLTF_INFLUENCES)
     warnings = [*loaded.warnings, *binding.warnings, *dropped]
-    files = save(out, loaded.with_weights(binding.weights))
+    if unused is not None and unused.layers:
+        warnings.append(
+            f"{rig.name} holds {len(unused.layers)} layers, which were not applied; apply them "
+            f"with --layers {rig}"
+        )
+    result = loaded.with_weights(binding.weights)
+    if edits is not None and out.suffix.lower() in GLTF:
+        settings = settings_with_layers(loaded, binding, edits, refinement(loaded, **touches))
+        files = save_bound(out, result, settings)
+    else:
+        files = save(out, result)
     warnings += saving_notes(out, loaded)
     document = {
         "input": str(rig),
@@ -140,7 +167,7 @@ def bind(
         "files": [str(file) for file in files],
         "method": options["method"],
         "parameters": {**asdict(how), **touches},
-        "corrections": None if corrections is None else str(corrections),
+        "layers": None if layers is None else str(layers),
         "template": template,
         **described(loaded, binding.graph, binding.distances, binding.seconds),
         "influences": summarize_weights(binding.weights),
@@ -169,19 +196,19 @@ def _with_template(
 def _limited(
     rig: Rig,
     binding: Binding,
-    corrections: Corrections | None,
+    edits: Edits | None,
     touches: dict[str, Any],
 ) -> tuple[Binding, list[str]]:
     """Limit the influences to those of glTF; return a warning about the dropped weight."""
+    from ..editing import Edits
     from ..editing.bind import weighed_again
-    from ..editing.corrections import Corrections
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
     if most <= GLTF_INFLUENCES:
         return binding, []
     limited = weighed_again(
-        rig, binding, corrections or Corrections(), max_influences=GLTF_INFLUENCES, **touches
+        rig, binding, edits or Edits(), max_influences=GLTF_INFLUENCES, **touches
     )
     dropped = every.sum(axis=1, where=limited.weights == 0)
     sentence = (

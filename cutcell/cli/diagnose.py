@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -15,7 +15,7 @@ from .console import WRONG_INPUT, for_people, print_json, print_warnings, progre
 from .options import FILES, Json, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
-    from ..diagnosis import Finding
+    from ..diagnosis import Diagnosis, Finding
 
 EPILOG = """Examples:
 
@@ -23,10 +23,16 @@ EPILOG = """Examples:
 
 - `cutcell diagnose character.glb --fix repaired.glb`
 
-- `cutcell diagnose character.glb --json | jq '.findings[].code'`  (for a script)"""
+- `cutcell diagnose character.glb --json | jq '.findings[].code'`  (for a script)
+
+- `cutcell diagnose character.glb --fail-on error`  (for continuous integration)"""
 
 COLORS = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
 INDENT = " " * 8
+FAIL_ON = ("error", "warning")
+"""Severities that `--fail-on` accepts, the most severe first."""
+FAILED = 1
+"""Exit code where a finding is at least that severe."""
 FEW = 5
 """Lines of details that are printed of one finding; `--json` has them all."""
 
@@ -45,6 +51,15 @@ def diagnose(
     ] = None,
     resolution: Resolution = 64,
     skeleton: SkeletonFile = None,
+    fail_on: Annotated[
+        str | None,
+        typer.Option(
+            "--fail-on",
+            metavar="SEVERITY",
+            help="Exit with code 1 if a finding is at least as severe: error or warning. With"
+            " --fix, findings of the repaired copy count.",
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Check RIG for faults of its mesh, skeleton and weights.
@@ -56,7 +71,10 @@ def diagnose(
     from ..diagnosis import diagnose as examine
     from ..diagnosis import unreadable
     from ..io import check_output, load, save, saving_notes
+    from ..rig.checks import check_choice
 
+    if fail_on is not None:
+        check_choice("--fail-on", fail_on, FAIL_ON)
     if fix is not None:
         check_output(fix)
     try:
@@ -93,8 +111,17 @@ def diagnose(
     if json:
         document = {"input": str(rig), "resolution": resolution, **before.to_dict()}
         print_json({**document, "repair": repair, "warnings": warnings})
-        return
-    print_warnings(warnings)
+    else:
+        print_warnings(warnings)
+        _print_diagnosis(rig, fix, before, repair)
+    counts = (after or before).counts
+    if fail_on is not None and any(counts[s] for s in FAIL_ON[: FAIL_ON.index(fail_on) + 1]):
+        raise typer.Exit(FAILED)
+
+
+def _print_diagnosis(
+    rig: Path, fix: Path | None, before: Diagnosis, repair: dict[str, Any] | None
+) -> None:
     _print_findings(f"{rig.name}: {_counts(before.counts)}", before.findings)
     if fix is not None and repair is None:
         _line(f"nothing to repair: {fix.name} was not written")

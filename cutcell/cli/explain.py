@@ -12,7 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import CorrectionsFile, Json, RigFile, SkeletonFile, chosen_method, with_method
+from .options import Json, LayersFile, RigFile, SkeletonFile, chosen_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 EPILOG = """Examples:
 
 - `cutcell explain character.glb 120`
+
+- `cutcell explain character.glb 120 --joint hand.L`  (why not this joint?)
 
 - `cutcell explain character.glb 120 --method paper`
 
@@ -37,7 +39,11 @@ def explain(
         int, typer.Argument(metavar="VERTEX", help="Number of the vertex in the file, from 0.")
     ],
     options: dict[str, Any],
-    corrections: CorrectionsFile = None,
+    joint: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Also explain why this joint has no weight there."),
+    ] = None,
+    layers: LayersFile = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
@@ -47,22 +53,26 @@ def explain(
     weight after each step, and the weight in the file.
     """
     from ..editing import explain as compute
-    from ..editing.corrections import Corrections
+    from ..editing.stored import load_edits, with_base
     from ..io import load
 
     how = chosen_method(options)
-    corrected = None if corrections is None else Corrections.load(corrections)
+    stored = None if layers is None else load_edits(layers)
     loaded = load(rig, skeleton=skeleton)
+    if stored is not None:
+        loaded = with_base(loaded)
     with progress_bars(quiet=json) as progress:
-        explanation = compute(loaded, vertex, method=how, corrections=corrected, progress=progress)
+        explanation = compute(
+            loaded, vertex, joint=joint, method=how, edits=stored, progress=progress
+        )
     if json:
         print_json({"input": str(rig), **explanation.to_dict(), "warnings": list(loaded.warnings)})
         return
     print_warnings(loaded.warnings)
-    _print(f"{rig.name}, vertex {vertex}", explanation)
+    _print(f"{rig.name}, vertex {vertex}", explanation, joint)
 
 
-def _print(heading: str, explanation: Explanation) -> None:
+def _print(heading: str, explanation: Explanation, joint: str | None) -> None:
     from ..editing.explain import STEPS
 
     console = Console(highlight=False)
@@ -70,6 +80,8 @@ def _print(heading: str, explanation: Explanation) -> None:
     table = Table(title=Text(f"{heading} at ({place})", "bold"), title_justify="left", box=None)
     table.add_column(style="dim", no_wrap=True)
     shares = explanation.joints[:MAX_JOINTS]
+    absent = [share for share in explanation.joints if share.absence]
+    shares += tuple(share for share in absent if share.name == joint and share not in shares)
     for share in shares:
         table.add_column(Text(shown_name(share.name), overflow="fold"), justify="right")
     for name, cells in _rows(shares, STEPS):
@@ -79,6 +91,9 @@ def _print(heading: str, explanation: Explanation) -> None:
         console.print(f"It follows its nearest bones in a straight line: {explanation.fallback}.")
     for share in shares:
         console.print(Text(f"path to {shown_name(share.name)}: {_path(share)}", "dim"))
+    for share in shares:
+        if share.absence:
+            console.print(Text(f"no weight of {shown_name(share.name)}: {share.absence}"))
     if len(explanation.joints) > len(shares):
         console.print(
             f"and {len(explanation.joints) - len(shares)} more joints with less weight: --json"
@@ -90,6 +105,7 @@ def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[s
     rows = [
         ("distance", [_number(share.distance) for share in shares]),
         ("through the air", [_number(share.straight) for share in shares]),
+        ("rank", [str(share.rank or "") for share in shares]),
     ]
     factors = dict.fromkeys(name for share in shares for name in share.factors)
     for name in factors:
@@ -98,7 +114,10 @@ def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[s
     if factors:
         rows.append(("counts as", [_number(share.effective) for share in shares]))
     present = dict.fromkeys(name for share in shares for name in share.steps)
-    rows += [(steps[name], [f"{share.steps[name]:.4f}" for share in shares]) for name in present]
+    rows += [
+        (steps.get(name, name), [f"{share.steps[name]:.4f}" for share in shares])
+        for name in present
+    ]
     if any(share.file_weight is not None for share in shares):
         rows.append(("in the file", [f"{share.file_weight:.4f}" for share in shares]))
     return rows

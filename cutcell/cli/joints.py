@@ -28,7 +28,8 @@ def joints(
     """List the joints of RIG: which may carry weight, and why.
 
     The weights in the file decide. Without weights, names and positions do: end markers,
-    controls, and roots outside the body are excluded. `cutcell bind` has the same options.
+    controls, and roots outside the body are excluded. Doubtful joints may carry weight;
+    exclude them with `--no-deform`. `cutcell bind` has the same options.
     """
     from ..io import load
     from ..io.files import naming
@@ -46,9 +47,13 @@ def joints(
         if bool(guess.deform[j]) != carries:
             by_weights = chosen.weights is not None and carries == loaded.skeleton.deform[j]
             reason = "by the file" if by_weights else "chosen"
-        parent = int(chosen.skeleton.parents[j])
-        rows.append({"name": name, "parent": parent, "deform": carries, "reason": reason})
+        doubtful = carries and bool(guess.doubtful[j]) and reason == guess.reason[j]
+        row = {"name": name, "parent": int(chosen.skeleton.parents[j]), "deform": carries}
+        rows.append({**row, "reason": reason, "doubtful": doubtful})
     document = {"input": str(rig), "joints": rows, "warnings": list(loaded.warnings)}
-    cells = [(row["name"], f"{'yes' if row['deform'] else 'no'} · {row['reason']}") for row in rows]
+    answers = ["doubtful" if row["doubtful"] else "yes" if row["deform"] else "no" for row in rows]
+    cells = [
+        (row["name"], f"{yes} · {row['reason']}") for row, yes in zip(rows, answers, strict=True)
+    ]
     count = int(chosen.skeleton.deform.sum())
     print_result(document, f"{rig.name}: {count} of {len(rows)} joints deform", cells, json)

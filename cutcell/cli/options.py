@@ -30,15 +30,14 @@ def _option(panel: str, flags: str, metavar: str, text: str, show_default: bool 
     )
 
 
-RigFile = Annotated[
-    Path,
-    typer.Argument(
-        metavar="RIG",
-        help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
-        " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
-        " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it.",
-    ),
-]
+_RIG = typer.Argument(
+    metavar="RIG",
+    help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
+    " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
+    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it.",
+)
+RigFile = Annotated[Path, _RIG]
+OptionalRigFile = Annotated[Path | None, _RIG]
 SkeletonFile = Annotated[
     Path | None,
     _option(
@@ -86,12 +85,12 @@ Fresh = Annotated[
         " `cutcell joints` lists the result.",
     ),
 ]  # fmt: skip
-CorrectionsFile = Annotated[
+LayersFile = Annotated[
     Path | None,
     _option(
-        TOUCH, "--corrections", "FILE",
-        "Corrections (.json): joints moved, excluded, locked or with another influence "
-        "radius; parts bound to joints; weights of single vertices.",
+        TOUCH, "--layers", "FILE",
+        "Edits of the character: layers over its weights, joints moved or excluded, and options of"
+        " the method. A .json, or a .glb or .vrm that holds layers.",
     ),
 ]  # fmt: skip
 Smoothing = Annotated[
@@ -147,11 +146,6 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         str | None, None, "--falloff", "F",
         "Decrease of weight with distance. rig: for animation. paper: the paper's kernel (its"
         " equation 1), a soft feature of the distance. Default: rig; paper with --method paper.",
-    ),
-    "refine": (
-        str, "none", "--refine", "R",
-        "Correction of the rig falloff. learned: by a small model that learned from rigs of many"
-        " makers.",
     ),
     "alpha": (
         float | None, None, "--alpha", "A",
@@ -228,3 +222,12 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
     if values.get("max_influences") == "all":
         values["max_influences"] = None
     return method_of(check_choice("method", values.pop("method"), METHODS), **values)
+
+
+def layered_method(options: Mapping[str, Any], stored: Mapping[str, Any]) -> Method:
+    """Return the method that is stored with layers, with other options of the command line."""
+    chosen = {name: value for name, value in options.items() if value != METHOD_OPTIONS[name][1]}
+    if "method" in chosen:
+        stored = {}
+    stored = {name: "all" if value is None else value for name, value in stored.items()}
+    return chosen_method({**options, **stored, **chosen})

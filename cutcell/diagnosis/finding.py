@@ -192,6 +192,13 @@ KINDS = {
         "{parts:part/follow} a joint that is far away, though another is near.",
         "Make each rigid to the nearest joint, unless it is meant to follow the other.",
     ),
+    "stretched-surface": Kind(
+        "Surface that stretches", "warning",
+        "{part} of the surface stretches or shrinks to more than twice when joints turn by "
+        "{degrees:g}°.",
+        "Turn this joint to see it. If its weights are wrong, change which joints deform, or bind "
+        "the part separately.",
+    ),
     "stretched-edges": Kind(
         "Edges that stretch", "note",
         "Edges at {vertices:vertex} become {times:g} times as long or more when a joint turns by "
@@ -317,7 +324,7 @@ class Finding:
 
 
 class _Texts(Formatter):
-    """Format templates; arrays count as how many there are."""
+    """Format templates; an array is formatted as its length."""
 
     def format_field(self, value: Any, spec: str) -> str:
         number = len(value) if isinstance(value, np.ndarray | tuple) else value

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import normals
 from ..pose import axis_rotation
+from ..pose.stretch import DEGREES as STRETCH_DEGREES
+from ..pose.stretch import MAX_SHARE, followed, measure_stretch, turned_edges
 from .finding import Finding, Pose, found, share
 from .subject import Subject
 
@@ -36,8 +38,10 @@ ALL = 1 - 1e-9
 
 def check_sweep(subject: Subject) -> Iterator[Finding]:
     """Turn one joint after the other and look for edges, faces and volumes that it ruins."""
-    faults = sorted(_poses(subject), key=lambda fault: -fault.longest)
-    yield from _stretched(subject, faults)
+    follows = _followed(subject)
+    yield from _stretched_surface(subject)
+    yield from _torn(subject, follows)
+    faults = list(_poses(subject, follows))
     yield from _flipped(subject, faults)
     yield from _lost(subject, faults)
 
@@ -47,24 +51,36 @@ class _PoseFaults:
     """Faults in one pose."""
 
     pose: Pose
-    stretched: NDArray[np.intp]  # welded vertices
-    longest: float
     flipped: NDArray[np.intp]  # of the faces that are whole
     flipped_area: float
     lost: float
 
 
-def _poses(subject: Subject) -> Iterator[_PoseFaults]:
-    skeleton, points, faces = subject.rig.skeleton, subject.points, subject.faces
+@dataclass(frozen=True, eq=False)
+class _Torn:
+    """Edges that become much longer in one pose."""
+
+    pose: Pose
+    vertices: NDArray[np.intp]  # welded
+    longest: float
+
+
+def _followed(subject: Subject) -> NDArray[np.float64]:
+    """Return by how much each welded vertex follows each joint, (j, k)."""
     shares = subject.weights[subject.first]
     total = shares.sum(axis=1, keepdims=True)
     shares /= np.where(total > 0, total, 1)
-    followed = skeleton.subtree @ shares.T  # (j, k)
-    del shares  # 50 joints of a million vertices take half a gigabyte
-    joints = subject.graph.lattice.to_unit(skeleton.joints)
-    edges = subject.edges.edges
-    ends_of, corners_of = (np.ascontiguousarray(rows.T, np.intp) for rows in (edges, faces))
-    length = _lengths(points[edges])
+    return followed(shares, subject.rig.skeleton)
+
+
+def _turns() -> list[tuple[str, float, NDArray[np.float64]]]:
+    return [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
+
+
+def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_PoseFaults]:
+    points, faces = subject.points, subject.faces
+    joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
+    corners_of = np.ascontiguousarray(faces.T, np.intp)
     at_first = normals(points[faces])
     area = np.linalg.norm(at_first, axis=1).sum()
     is_open = np.zeros(subject.component.max() + 1, bool)
@@ -74,58 +90,77 @@ def _poses(subject: Subject) -> Iterator[_PoseFaults]:
     sign[is_open[subject.component[faces[:, 0]]]] = 0.0
     volume = np.einsum("i,ij,ij->", sign, points[faces[:, 0]], at_first)
     number = np.zeros(len(points), np.intp)
-    turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
+    turns = _turns()
     for j, joint in enumerate(joints):
-        moved = followed[j]
+        moved = follows[j]
         if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
             continue  # all moves as one, or nothing does
-        bent = np.flatnonzero(np.ptp(moved[ends_of], axis=0) > MOVES)
         at_corners = moved[corners_of]
         low, high = at_corners.min(axis=0), at_corners.max(axis=0)
         # Vertices that follow wholly turn about the joint, which changes no volume around it.
         changing = np.flatnonzero((high > 0) & (low < ALL))
         is_unlike = (high - low)[changing] > MOVES
-        before, around, ends = at_first[changing], faces[changing], edges[bent]
+        before, around = at_first[changing], faces[changing]
         follow = at_corners[:, changing].mean(axis=0)[:, None]
-        # Only the vertices of these faces are posed; bent edges are theirs.
+        # Only the vertices of these faces are posed.
         is_posed = np.zeros(len(points), bool)
         is_posed[around] = True
         posed_vertices = np.flatnonzero(is_posed)
         number[posed_vertices] = np.arange(len(posed_vertices))
-        local_ends, local_faces = number[ends], number[around]
+        local_faces = number[around]
         arms, by = points[posed_vertices] - joint, moved[posed_vertices, None]
         enclosed = np.einsum("i,ij,ij->", sign[changing], arms[local_faces[:, 0]], before)
         for axis, degrees, turn in turns:
             posed = arms + by * (arms @ (turn - np.eye(3)).T)
-            longer = _lengths(posed[local_ends]) - length[bent]
-            torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * length[bent])
             expected = before + follow * (before @ turn.T - before)
             after = normals(posed[local_faces])
             over = is_unlike & (np.einsum("ij,ij->i", after, expected) < 0)
             left = np.einsum("i,ij,ij->", sign[changing], posed[local_faces[:, 0]], after)
             yield _PoseFaults(
                 Pose(j, axis, degrees),
-                np.unique(ends[torn]),
-                float(longer[torn].max(initial=0)),
                 changing[over],
                 float(np.linalg.norm(before[over], axis=1).sum() / area),
                 (enclosed - left) / volume if volume > 0 else 0.0,
             )
 
 
-def _lengths(ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    along = ends[:, 0] - ends[:, 1]
-    return np.sqrt(np.einsum("ij,ij->i", along, along))
+def _stretched_surface(subject: Subject) -> Iterator[Finding]:
+    stretch = measure_stretch(subject.graph, subject.rig.skeleton, subject.weights)
+    if stretch.share > MAX_SHARE and stretch.joint is not None:
+        yield from found(
+            "stretched-surface",
+            vertices=stretch.vertices,
+            joints=np.array([stretch.joint]),
+            details=[f"{subject.name(stretch.joint)}: the most, about {stretch.axis}"],
+            pose=Pose(stretch.joint, stretch.axis, STRETCH_DEGREES),
+            part=share(stretch.share, 1),
+            degrees=STRETCH_DEGREES,
+        )
 
 
-def _stretched(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    torn = _worst(faults, "longest", 0)
+def _torn(subject: Subject, follows: NDArray[np.float64]) -> Iterator[Finding]:
+    torn = sorted(_torn_edges(subject, follows), key=lambda fault: -fault.longest)
     yield from found(
         "stretched-edges",
-        vertices=subject.vertices_at(_joined(fault.stretched for fault in torn)),
+        vertices=subject.vertices_at(_joined(fault.vertices for fault in torn)),
         times=STRETCH,
         **_evidence(subject, torn, "longest", MIN_STRETCH, "by {} of the longest side"),
     )
+
+
+def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Torn]:
+    edges, turns = subject.edges.edges, _turns()
+    joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
+    rotations = [turn for _, _, turn in turns]
+    turned = np.arange(len(joints))
+    for block in turned_edges(subject.points, edges, follows, joints, turned, rotations, STRETCH):
+        longer = block.after - block.before
+        is_torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * block.before)
+        for t, (axis, degrees, _) in enumerate(turns):
+            for joint in np.unique(block.joint[is_torn[:, t]]):
+                rows = is_torn[:, t] & (block.joint == joint)
+                vertices = np.unique(edges[block.edge[rows]]).astype(np.intp)
+                yield _Torn(Pose(int(joint), axis, degrees), vertices, float(longer[rows, t].max()))
 
 
 def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
@@ -156,7 +191,7 @@ def _joined(numbers: Iterable[NDArray[np.intp]]) -> NDArray[np.intp]:
 
 
 def _evidence(
-    subject: Subject, faults: list[_PoseFaults], size: str, bound: float, text: str
+    subject: Subject, faults: Sequence[_PoseFaults | _Torn], size: str, bound: float, text: str
 ) -> dict[str, Any]:
     """Return severity, joints, worst pose, and a line for each joint of its worst pose."""
     best: dict[int, str] = {}

@@ -1,20 +1,32 @@
-"""Manual edits: corrections, locks, symmetry, smoothing, and the steps of a binding."""
+"""Edits by people: layers of weights, the skeleton, symmetry; and the steps of a binding."""
 
 from .bind import bind
-from .correct import corrected_rig
-from .corrections import Corrections, JointCorrection, PartCorrection
+from .edited import edited_rig
+from .edits import Edits, JointEdit
 from .explain import Explanation, JointShare, Piece, explain
+from .layers.contents import Attached, Computed, Filled, FromFile, Locked, Mirrored, Smoothed
+from .layers.layer import Layer, Mask
+from .layers.painted import Painted
 from .refine import refine_weights
 
 __all__ = [
-    "Corrections",
+    "Attached",
+    "Computed",
+    "Edits",
     "Explanation",
-    "JointCorrection",
+    "Filled",
+    "FromFile",
+    "JointEdit",
     "JointShare",
-    "PartCorrection",
+    "Layer",
+    "Locked",
+    "Mask",
+    "Mirrored",
+    "Painted",
     "Piece",
+    "Smoothed",
     "bind",
-    "corrected_rig",
+    "edited_rig",
     "explain",
     "refine_weights",
 ]

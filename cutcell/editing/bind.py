@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..binding import Binding, binding_steps
 from ..errors import SkeletonError
 from ..geodesics import BoneDistances
 from ..geodesics.bone_extents.skins import method_per_character
-from ..graph import CutCellGraph
-from ..graph.fingerprint import graph_fingerprint, require_same
+from ..graph import CutCellGraph, build_graph
+from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
 from ..graph.lattice import Lattice
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
@@ -23,10 +26,13 @@ from ..runtime.threads import cancellable
 from ..weights.adjustments import Adjustments
 from ..weights.context import Context, Step, run
 from ..weights.warm_up import is_compiled, warm_up
-from .binding_warnings import binding_warnings
-from .correct import adjustments_of, corrected_rig, correction_steps, joints_measured
-from .corrections import Corrections
-from .refine import RefineOptions
+from .binding_warnings import with_warnings
+from .edited import adjustments_of, edited_rig, joints_measured
+from .edits import Edits
+from .layers import RigSources, apply_layers, vertices_of
+from .layers.contents import Computed
+from .layers.layer import Layer
+from .refine import RefineOptions, refinement
 
 COPIES = 4
 """Maximum number of matrices of vertices and joints, distances and weights, at a time."""
@@ -40,7 +46,7 @@ def bind(
     smoothing: int = 0,
     symmetric: bool = False,
     locked: Sequence[int | str] = (),
-    corrections: Corrections | None = None,
+    edits: Edits | None = None,
     graph: CutCellGraph | None = None,
     progress: Progress = silent,
     **options: Unpack[Options],
@@ -62,10 +68,10 @@ def bind(
         Options of the method. `cutcell.ANIMATION` is for animation, `cutcell.PAPER` is the paper's
         method.
     smoothing, symmetric, locked
-        See `refine_weights`.
-    corrections : Corrections, optional
-        Manual corrections: joints without weight, locked or with another gain or radius, parts
-        bound to joints, weights of single vertices.
+        See `refine_weights`; they are layers below all others.
+    edits : Edits, optional
+        What a person changed: joints, and layers over computed weights or over the file's. Its own
+        `method` is not used; see `cutcell.Edits`.
     graph : CutCellGraph, optional
         Graph of another binding of the same mesh by the same method, `binding.graph`. It does not
         depend on the skeleton and is reused.
@@ -74,7 +80,7 @@ def bind(
         before them "compile" the very first time on a machine, and after a change of the code.
     **options
         Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
-        `orient`, `samples`, `leaf`, `falloff`, `refine`, `alpha`,
+        `orient`, `samples`, `leaf`, `falloff`, `alpha`,
         `max_influences`, `threshold`.
 
     Returns
@@ -98,15 +104,15 @@ def bind(
     """
     rig = as_rig(rig)
     method = method_of(method, resolution, **options)
-    corrections = Corrections() if corrections is None else corrections
-    rig = corrected_rig(rig, corrections)
+    edits = Edits() if edits is None else edits
+    rig = edited_rig(rig, edits)
     _check(rig, method)
     if graph is None and resolution is None:
         method = method_per_character(rig, method)
     elif graph is not None:
         require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
     steps = bind_steps(
-        rig, method, corrections, graph, smoothing=smoothing, symmetric=symmetric, locked=locked
+        rig, method, edits, graph, smoothing=smoothing, symmetric=symmetric, locked=locked
     )
     if not is_compiled():
         progress("compile", 0.0)
@@ -115,7 +121,7 @@ def bind(
 
     def work(report: Progress) -> Binding:
         context = run(steps, Context(method, rig.allowed, report))
-        return finished(rig, context, corrections, locked)
+        return finished(rig, context, edits)
 
     return cancellable(work, progress, "graph" if graph is None else "distances")
 
@@ -123,48 +129,92 @@ def bind(
 def bind_steps(
     rig: Rig,
     method: Method,
-    corrections: Corrections,
+    edits: Edits,
     graph: CutCellGraph | None = None,
     distances: BoneDistances | None = None,
-    **refinement: Unpack[RefineOptions],
+    after: Callable[[Layer, NDArray[np.float64]], None] = lambda layer, weights: None,
+    **refinements: Unpack[RefineOptions],
 ) -> list[Step]:
-    """List the steps of `bind` for a rig that is corrected already; check the refinement.
+    """List the steps of `bind` for a rig that is edited already; check the refinements.
 
-    A given graph, or given distances, are taken instead of new ones.
+    A given graph, or given distances, are taken instead of new ones. See `apply_layers` for
+    `after`.
+    """
+    layers = edits.stack(refinement(rig, **refinements))
+
+    def apply(context: Context) -> NDArray[np.float64]:
+        def computed(layer: Layer) -> NDArray[np.float64]:
+            return layer_context(rig, context, edits.reach, layer).weights
+
+        sources = RigSources(rig, method, context.graph, context.operators, computed)
+        return apply_layers(context.weights, layers, sources, after)
+
+    steps = computed_steps(rig, method, edits.reach, graph, distances)
+    return [*steps, *([Step("layers", apply)] if layers else [])]
+
+
+def computed_steps(
+    rig: Rig,
+    method: Method,
+    content: Computed,
+    graph: CutCellGraph | None = None,
+    distances: BoneDistances | None = None,
+    vertices: NDArray[np.intp] | None = None,
+) -> list[Step]:
+    """List the steps from a rig to computed weights, with the reach of joints of a content.
+
+    See `adjustments_of` for the vertices.
     """
 
     def adjust(context: Context) -> Adjustments | None:
         context.report(0.0)
-        return adjustments_of(rig, context.graph, corrections)
+        return adjustments_of(rig, context.graph, content, vertices)
 
-    nearest, within = joints_measured(corrections, method)
+    nearest, within = joints_measured(content, method)
     build, measure, *weigh = binding_steps(rig, method, graph, distances, nearest, within)
-    corrected = correction_steps(rig, corrections, **refinement)
-    return [build, measure, Step("adjustments", adjust, "adjustments"), *weigh, *corrected]
+    return [build, measure, Step("adjustments", adjust, "adjustments"), *weigh]
+
+
+def layer_context(rig: Rig, context: Context, reach: Computed, layer: Layer) -> Context:
+    """Compute the weights of a layer whose content is computed; return all results.
+
+    The context is that of the other weights, which were computed with the reach of joints of
+    `reach`; its graph and its distances are used where they fit.
+    """
+    content, graph, distances = layer.content, context.graph, None
+    assert isinstance(content, Computed)
+    method = content.method(context.method)
+    vertices = vertices_of(layer.mask, RigSources(rig, method, graph).component)
+    if graph.fingerprint != graph_fingerprint(rig.mesh, method):
+        graph = build_graph(rig.mesh, method=method, progress=context.progress)
+    else:
+        expected = distance_fingerprint(rig.skeleton, method, rig.allowed)
+        is_same = expected.items() <= context.distances.fingerprint.items()
+        if is_same and joints_measured(content, method) == joints_measured(reach, context.method):
+            distances = context.distances
+    steps = computed_steps(rig, method, content, graph, distances, vertices)
+    return run(steps, Context(method, rig.allowed, context.progress, scaled=context.scaled))
 
 
 def weighed_again(
     rig: Rig,
     binding: Binding,
-    corrections: Corrections,
+    edits: Edits,
     max_influences: int,
-    **refinement: Unpack[RefineOptions],
+    **refinements: Unpack[RefineOptions],
 ) -> Binding:
     """Compute the weights of a binding again with at most the given number of influences."""
     method = replace(binding.method, max_influences=max_influences)
-    steps = bind_steps(rig, method, corrections, distances=binding.distances, **refinement)
+    steps = bind_steps(rig, method, edits, distances=binding.distances, **refinements)
     context = Context(method, rig.allowed, seconds=dict(binding.seconds))
-    return finished(rig, run(steps, context), corrections, refinement.get("locked", ()))
+    return finished(rig, run(steps, context), edits)
 
 
-def finished(
-    rig: Rig, context: Context, corrections: Corrections, locked: Sequence[int | str] = ()
-) -> Binding:
+def finished(rig: Rig, context: Context, edits: Edits) -> Binding:
     """Return the binding that the steps have computed, with its warnings."""
     context.report(1.0)
-    weights, distances = context.weights, context.distances
-    warnings = binding_warnings(rig, distances, weights, corrections, locked)
-    return Binding(weights, context.graph, distances, context.seconds, warnings, context.method)
+    results = context.weights, context.graph, context.distances, context.seconds
+    return with_warnings(rig, Binding(*results, (), context.method), edits)
 
 
 def _check(rig: Rig, method: Method) -> None:

@@ -3,61 +3,70 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..binding import Binding
+from ..errors import LocatedWarning
 from ..geodesics import FALLBACK_REASONS, BoneDistances
 from ..graph import CutCellGraph
+from ..method import ANIMATION
+from ..pose.stretch import DEGREES, MAX_SHARE, Stretch
 from ..rig import Rig
-from ..runtime.display import listed
-from ..weights.rig_falloff.surface_operators import SurfaceOperators
-from .correct import locked_by
-from .corrections import Corrections
-from .locks import joint_index, locked_joints
+from ..runtime.display import count, listed, shown_name
+from .edits import Edits
+from .layers import RigSources, vertices_of
+from .layers.contents import Attached, Filled, Locked
+from .layers.layer import Layer
+from .layers.painted import Painted
+from .locks import locked_joints
 
+FINDINGS = {1: "unused-vertices", 2: "unreachable-vertices"}
+"""Findings of vertices by the reason why no path reaches them."""
+Shown = (Filled, Attached, Painted)
+"""Contents that a person has chosen the joints of."""
 SAME = 1e-6
 """Weights that differ by less are the same: files round them."""
 
 
-def binding_warnings(
-    rig: Rig,
-    distances: BoneDistances,
-    weights: NDArray[np.float64],
-    corrections: Corrections,
-    locked: Sequence[int | str] = (),
-) -> tuple[str, ...]:
-    """Return warnings about weights and the data that they were computed from.
-
-    Shapes: weights (n, j).
-    """
-    is_locked = locked_joints(rig, [*locked, *locked_by(corrections)])
-    return (
+def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
+    """Return a binding with warnings about its weights and the data they were computed from."""
+    distances = binding.distances
+    warnings = (
         *_of_distances(distances.graph, distances),
         *_inferred_bones(rig, distances),
-        *_weightless(rig, weights),
-        *_blocked_by_locks(rig, distances.graph, corrections, is_locked),
+        *_weightless(rig, binding.weights),
+        *_stretches(rig, binding.stretch),
+        *_blocked_by_locks(rig, distances.graph, edits.layers),
     )
+    warned = replace(binding, warnings=warnings)
+    vars(warned)["stretch"] = binding.stretch  # not measured again
+    return warned
 
 
 def _of_distances(graph: CutCellGraph, distances: BoneDistances) -> Iterator[str]:
     inverted = int(graph.inverted.sum())
     if inverted:
-        yield (
+        yield LocatedWarning(
             f"{inverted:,} of {len(graph.inverted):,} faces are inside out and count as turned "
-            "round; the mesh itself stays as it is"
+            "round; the mesh itself stays as it is",
+            "inverted-faces",
         )
     for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
-        count = int((distances.fallback == reason).sum())
-        if count:
-            yield (
-                f"{count:,} of {len(distances.fallback):,} vertices follow their nearest bones "
-                f"in a straight line: {text}"
+        some = int((distances.fallback == reason).sum())
+        if some:
+            yield LocatedWarning(
+                f"{some:,} of {len(distances.fallback):,} vertices follow their nearest bones "
+                f"in a straight line: {text}",
+                FINDINGS.get(reason, ""),
             )
     if not (graph.node_kind == 1).any():
-        yield (
+        yield LocatedWarning(
             "no lattice point lies inside the mesh, distances run over its surface alone: it is "
-            "open, or thinner than a lattice cell. Try a higher resolution"
+            "open, or thinner than a lattice cell. Try a higher resolution",
+            "no-interior",
         )
 
 
@@ -81,40 +90,53 @@ def _weightless(rig: Rig, weights: NDArray[np.float64]) -> Iterator[str]:
         )
 
 
-def _blocked_by_locks(
-    rig: Rig, graph: CutCellGraph, corrections: Corrections, is_locked: NDArray[np.bool_]
-) -> Iterator[str]:
-    """Report corrections without effect where locked joints keep the file's weights."""
-    if rig.weights is None or not is_locked.any():
-        return
-    for vertex, part in corrections.parts.items():
-        if part.how in ("itself", "file"):
-            continue
-        component = SurfaceOperators.of(graph).component[graph.vertex_node]
-        corrected, binding = np.zeros(len(is_locked)), "follows what it touches"
-        if part.joint is not None:
-            corrected[joint_index(rig.skeleton, part.joint)] = 1
-            binding = f'is glued to "{part.joint}"'
-        stored = rig.weights[component == component[vertex]]
-        keeping = is_locked & (np.abs(stored - corrected) > SAME).any(axis=0)
-        if keeping.any():
-            yield (
-                f"the part of vertex {vertex} {binding}, but these joints are locked and keep the "
-                f"file's weights there: {_names(rig, keeping)}"
-            )
-    column = {rig.skeleton.names[j]: j for j in np.flatnonzero(is_locked)}
-    overrides = np.zeros((len(corrections.vertices), len(is_locked)))
-    for row, weights in enumerate(corrections.vertices.values()):
-        for name in weights.keys() & column.keys():
-            overrides[row, column[name]] = weights[name]
-    differs = np.abs(overrides - rig.weights[list(corrections.vertices)]) > SAME
-    keeping = is_locked & differs.any(axis=0)
-    if keeping.any():
-        count = int(differs[:, keeping].any(axis=1).sum())
-        yield (
-            f"{count} vertices are set by hand, but these joints are locked and keep the file's "
-            f"weights there: {_names(rig, keeping)}"
+def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
+    """Report a surface of which much stretches as joints turn."""
+    if stretch.share > MAX_SHARE and stretch.joint is not None:
+        place = ", ".join(f"{value:.3g}" for value in stretch.position or ())
+        yield LocatedWarning(
+            f"{stretch.share:.0%} of the surface stretches or shrinks to more than twice when "
+            f"joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst at "
+            f"vertex {stretch.vertex} ({place}). Check which joints deform near there, or bind "
+            "that part separately",
+            "stretched-surface",
         )
+
+
+def _blocked_by_locks(rig: Rig, graph: CutCellGraph, layers: Sequence[Layer]) -> Iterator[str]:
+    """Report layers without effect where joints locked above them keep the file's weights."""
+    if rig.weights is None:
+        return
+    for number, layer in enumerate(layers):
+        above = [one.content for one in layers[number + 1 :] if one.is_active]
+        locked = [name for one in above if isinstance(one, Locked) for name in one.joints]
+        if not locked or not layer.is_active or not isinstance(layer.content, Shown):
+            continue
+        is_locked = locked_joints(rig, locked)
+        sources = RigSources(rig, ANIMATION, graph)
+        which = vertices_of(layer.mask, sources.component)
+        if isinstance(layer.content, Attached):
+            which = np.arange(len(rig.weights)) if which is None else which
+            rows = np.zeros((len(which), int(is_locked.sum())))
+        else:
+            which, some = sources.rows(layer, rig.weights, which)
+            rows = np.asarray(some[:, np.flatnonzero(is_locked)].todense())
+        differs = np.abs(rig.weights[which][:, is_locked] - rows) > SAME
+        keeping = is_locked.copy()
+        keeping[is_locked] = differs.any(axis=0)
+        if keeping.any():
+            place = "" if layer.mask.part is None else f" on the part of vertex {layer.mask.part}"
+            names = listed([f'"{shown_name(name)}"' for name in layer.content.joints_named()])
+            to = f" ({names})" if names and not isinstance(layer.content, Painted) else ""
+            yield (
+                f'the layer "{layer.title}"{place}{to} has no effect at '
+                f"{count(int(differs.any(axis=1).sum()), 'vertex')}: these joints are locked "
+                f"above it and keep the file's weights there: {_names(rig, keeping)}"
+            )
+
+
+def _name(rig: Rig, joint: int) -> str:
+    return f'"{shown_name(rig.skeleton.names[joint])}"'
 
 
 def _names(rig: Rig, which: NDArray[np.bool_]) -> str:

@@ -19,25 +19,24 @@ from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
 from ..weights.context import Context, Step, run
-from ..weights.rig_falloff.division import facing
+from .absence import absence_of, factors_of, rank_of
 from .bind import bind_steps
-from .correct import corrected_rig
-from .corrections import Corrections
+from .edited import edited_rig
+from .edits import Edits
+from .layers.layer import Layer
+from .locks import joint_index
 
 STEPS = {
     "falloff": "shares by distance",
-    "learned": "corrected by the model",
     "spread": "spread over skin",
     "rigid": "rigid components",
     "tail": "tail subtracted",
     "storable": "storable in file",
     "limit": "limited",
     "normalise": "normalised",
-    "parts": "part corrected",
-    "lock": "joints locked",
-    "override": "corrected",
 }
-"""Labels of the steps from distances to weights. A binding has some of them."""
+"""Labels of the steps from distances to weights. A binding has some of them, and then a step for
+each layer that changes the vertex, by its title."""
 SOME = 1e-4
 """Joints that no step gives as much are left out, unless the file has weight of them."""
 
@@ -80,15 +79,19 @@ class JointShare:
         Factors of the distance in the falloff for rigs: "component", if the bone is in
         another component; "radius", if the vertex is beyond the bone's radius; "facing", if the
         surface looks at the bone rather than away from it. The paper's has none. With either,
-        "gain", if corrections give the joint one.
+        "gain", if a layer gives the joint one.
     effective : float
         The distance times all factors: shares fall with it.
     steps : dict of str to float
-        The weight after each step, keys of `STEPS` in their order.
+        The weight after each step: keys of `STEPS` in their order, then the titles of layers.
     weight : float
         After the last.
     file_weight : float or None
         Weight in the file.
+    rank : int or None
+        1 for the nearest joint; None without a path.
+    absence : str
+        Why the joint has no weight, in a sentence; empty if it has some.
     """
 
     joint: int
@@ -101,6 +104,8 @@ class JointShare:
     steps: dict[str, float]
     weight: float
     file_weight: float | None
+    rank: int | None
+    absence: str
 
 
 @dataclass(frozen=True)
@@ -115,7 +120,8 @@ class Explanation:
     fallback : str
         Why no path through the body reaches the vertex; empty if one does.
     joints : tuple of JointShare
-        Joints with weight after any step or in the file; the largest weight first.
+        Joints with weight after any step or in the file, and the one that is asked for; the
+        largest weight first.
     """
 
     vertex: int
@@ -134,8 +140,9 @@ def explain(
     vertex: int,
     resolution: int | None = None,
     *,
+    joint: int | str | None = None,
     method: Method | MethodName = ANIMATION,
-    corrections: Corrections | None = None,
+    edits: Edits | None = None,
     distances: BoneDistances | None = None,
     progress: Progress = silent,
     **options: Unpack[Options],
@@ -148,11 +155,13 @@ def explain(
     vertex : int
     resolution : int, optional
         R; the method's when left out.
+    joint : int or str, optional
+        Number or name of a joint to explain even if it has no weight.
     method : Method, "animation" or "paper"
-    corrections : Corrections, optional
+    edits : Edits, optional
         As of `bind`.
     distances : BoneDistances, optional
-        Distances of this rig by this method and these corrections, such as those of a `Binding`;
+        Distances of this rig by this method and these edits, such as those of a `Binding`;
         computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph", "distances" and "weights".
@@ -166,8 +175,8 @@ def explain(
     Raises
     ------
     ParameterError
-        There is no such vertex, a parameter is out of its range, or the distances are of another
-        rig or method.
+        There is no such vertex or joint, a parameter is out of its range, or the distances are
+        of another rig or method.
     MeshError, SkeletonError
         The rig cannot be bound.
 
@@ -179,8 +188,8 @@ def explain(
     rig = as_rig(rig)
     method = method_of(method, resolution, **options)
     vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
-    corrections = Corrections() if corrections is None else corrections
-    rig = corrected_rig(rig, corrections)
+    edits = Edits() if edits is None else edits
+    rig = edited_rig(rig, edits)
     measured_at = None if distances is None else distances.graph.lattice.resolution
     if resolution is None and measured_at != method.resolution:  # as `bind` does
         method = method_per_character(rig, method)
@@ -200,37 +209,27 @@ def explain(
             rows["limit"] = np.where(weights > 0, next(reversed(rows.values())), 0.0)
         rows[step.name] = weights
 
-    run(bind_steps(rig, method, corrections, distances=distances), context, keep)
+    def keep_layer(layer: Layer, weights: NDArray[np.float64]) -> None:
+        row = weights[vertex].copy()
+        if np.array_equal(row, next(reversed(rows.values()))):
+            return
+        same = sum(name.split(" (")[0] == layer.title for name in rows)
+        rows[layer.title if not same else f"{layer.title} ({same + 1})"] = row
+
+    run(bind_steps(rig, method, edits, distances=distances, after=keep_layer), context, keep)
     last = next(reversed(rows.values()))
     most = np.max(list(rows.values()), axis=0)
     own = None if rig.weights is None else rig.weights[vertex]
-    listed = np.flatnonzero((most > SOME) | (0 if own is None else own > SOME))
+    is_listed = (most > SOME) | (False if own is None else own > SOME)
+    if joint is not None:
+        is_listed[joint_index(rig.skeleton, joint)] = True
+    listed = np.flatnonzero(is_listed)
     joints = listed[np.argsort(-last[listed], kind="stable")].tolist()
     shares = tuple(_share(rig, vertex, joint, context, rows) for joint in joints)
     progress("weights", 1.0)
     reason = int(context.distances.fallback[vertex])
     why = "" if reason == REACHED else FALLBACK_REASONS[reason]
     return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, shares)
-
-
-def _factors(context: Context, vertex: int, joint: int) -> dict[str, float]:
-    """Return what the falloff multiplies a joint's distance by."""
-    gain = 1.0 if context.adjustments is None else float(context.adjustments.gain[joint])
-    of_gain = {} if gain == 1 else {"gain": 1 / gain}
-    if context.method.falloff == "paper":
-        return of_gain
-    division, node = context.division, context.graph.vertex_node[vertex]
-    surface = division.surface
-    radius = 1.0
-    if division.beyond[node]:  # elsewhere nothing is beyond any radius
-        radius = float(context.distances.at_welded[joint, node] / division.radius[joint])
-    away = facing(surface.points[node], surface.normals[node], context.distances.bones, joint)
-    return {
-        "component": float(division.penalty[surface.component[node], joint]) * gain,
-        "radius": max(1.0, radius),
-        "facing": 1 / away,
-        **of_gain,
-    }
 
 
 def _share(
@@ -242,19 +241,31 @@ def _share(
     own = np.flatnonzero(bones.joint == joint)
     point = context.graph.nodes[context.graph.vertex_node[vertex]]
     straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)
-    factors = _factors(context, vertex, joint) if np.isfinite(distance) and len(own) else {}
+    factors = factors_of(context, vertex, joint) if np.isfinite(distance) and len(own) else {}
     weight = {name: float(row[joint]) for name, row in rows.items()}
+    path = _path(distances, joint, vertex) if len(own) else ()
+    length = sum(piece.length for piece in path) / unit
+    final = list(weight.values())[-1]
+    absence = (
+        ""
+        if final > 0
+        else absence_of(
+            context, vertex, joint, has_path=bool(path), factors=factors, steps=rows, labels=STEPS
+        )
+    )
     return JointShare(
         joint=joint,
         name=rig.skeleton.names[joint],
-        path=_path(distances, joint, vertex) if len(own) else (),
+        path=path,
         distance=distance * unit,
         straight=float(straight) * unit,
         factors=factors,
         effective=distance * unit * float(np.prod(list(factors.values()))),
         steps=weight,
-        weight=list(weight.values())[-1],
+        weight=final,
         file_weight=None if rig.weights is None else float(rig.weights[vertex, joint]),
+        rank=rank_of(context, vertex, joint, length),
+        absence=absence,
     )
 
 

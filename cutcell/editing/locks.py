@@ -19,27 +19,35 @@ def lock_joints(
     weights: NDArray[np.float64],
     locked: Sequence[int | str],
     max_influences: int | None = None,
+    which: NDArray[np.intp] | None = None,
 ) -> NDArray[np.float64]:
     """Put back the rig's own weights of some joints; the others share what these leave.
 
     If no other joint has weight, the rig's own weights of the others are restored, too. A vertex
     without weights in the file keeps those of the joints that are not locked, if it has any.
 
-    Shapes: weights (n, j); returns (n, j).
+    Shapes: weights (n, j), which (k,) or None for all vertices; returns (k, j).
     """
-    is_locked = locked_joints(rig, locked)
-    if not is_locked.any() or rig.weights is None:
+    is_locked, stored = locked_joints(rig, locked), rig.weights
+    if which is not None:
+        weights, stored = weights[which], None if stored is None else stored[which]
+    if not is_locked.any() or stored is None:
         return weights
-    locked_weights = np.where(is_locked, rig.weights, 0.0)
-    free = np.where(is_locked, 0.0, weights)
+    weights = weights.copy() if which is None else weights
+    columns = np.flatnonzero(is_locked)
+    before = weights[:, columns]
+    weights[:, columns] = 0.0
     if max_influences is not None:
-        free = _largest(free, max_influences - (locked_weights > 0).sum(axis=1))
-    others = np.where(is_locked, 0.0, rig.weights)
-    share = free.sum(axis=1, keepdims=True)
-    has_weight = rig.weights.any(axis=1, keepdims=True)
-    rest = np.where(has_weight, others.sum(axis=1, keepdims=True), 1.0)
-    result = locked_weights + np.divide(free * rest, share, out=others, where=share > 0)
-    return np.where(has_weight | (share > 0), result, weights)
+        _keep_largest(weights, max_influences - (stored[:, columns] > 0).sum(axis=1))
+    others = stored.copy()
+    others[:, columns] = 0.0
+    share, has_weight = weights.sum(axis=1, keepdims=True), stored.any(axis=1, keepdims=True)
+    weights *= np.where(has_weight, others.sum(axis=1, keepdims=True), 1.0)
+    np.divide(weights, share, out=weights, where=share > 0)
+    is_empty = share[:, 0] <= 0
+    weights[is_empty] = others[is_empty]
+    weights[:, columns] = np.where(has_weight | (share > 0), stored[:, columns], before)
+    return weights
 
 
 def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
@@ -78,9 +86,12 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
     return check_integer("joint", joint, 0, len(names) - 1, "or the name of one")
 
 
-def _largest(weights: NDArray[np.float64], count: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Keep the `count` largest weights of each row; ties go to the lower index."""
-    order = np.argsort(-weights, axis=1, kind="stable")
-    rank = np.empty_like(order)
-    np.put_along_axis(rank, order, np.arange(weights.shape[1])[None, :], axis=1)
-    return np.where(rank < count[:, None], weights, 0.0)
+def _keep_largest(weights: NDArray[np.float64], count: NDArray[np.intp]) -> None:
+    """Keep, in place, the `count` largest weights of each row; ties go to the lower index."""
+    row, column = np.divmod(np.flatnonzero(weights != 0), weights.shape[1])
+    is_many = np.bincount(row, minlength=len(weights)) > count
+    row, column = row[is_many[row]], column[is_many[row]]
+    order = np.lexsort((-weights[row, column], row))
+    row, column = row[order], column[order]
+    is_over = np.arange(len(row)) - np.searchsorted(row, row) >= count[row]
+    weights[row[is_over], column[is_over]] = 0.0

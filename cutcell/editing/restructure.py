@@ -11,25 +11,25 @@ from ..errors import ParameterError, SkeletonError
 from ..rig import Clip, Rig, Skeleton, with_origin
 from ..rig.clip import Rebased
 from ..runtime.display import shown_name
-from .corrections import Corrections
+from .edits import Edits
 from .locks import joint_index
 
 
-def restructured(rig: Rig, corrections: Corrections) -> Rig:
-    """Return a rig whose joints are added, removed, renamed and reparented by corrections.
+def restructured(rig: Rig, edits: Edits) -> Rig:
+    """Return a rig whose joints are added, removed, renamed and reparented by edits.
 
     Joints of the file come first, in its order. Weights of a removed joint go to its nearest
     remaining ancestor, or else to its first remaining descendant. A joint of the file
     keeps its motion relative to its parent; added joints do not move relative to theirs, and the
     motion of removed joints is dropped.
 
-    A rig to which the same corrections were applied is returned as it is; others are refused, for
+    A rig to which the same edits were applied is returned as it is; others are refused, for
     the weights and clips that they would start from are gone.
     """
-    if not corrections.structural:
+    if not edits.structural:
         return rig
     old = rig.original or rig.skeleton
-    skeleton, origin = restructured_skeleton(old, corrections)
+    skeleton, origin = restructured_skeleton(old, edits)
     if rig.origin is not None:
         _require_applied(rig, skeleton, origin)
         return rig
@@ -66,52 +66,48 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
 
 
 def _require_applied(rig: Rig, skeleton: Skeleton, origin: NDArray[np.int_]) -> None:
-    """Refuse corrections that make another skeleton (j,) of a rig's original one than it has."""
+    """Refuse edits that make another skeleton (j,) of a rig's original one than it has."""
     same = rig.origin is not None and np.array_equal(rig.origin, origin)
     same = same and skeleton.names == rig.skeleton.names
     if not same or not np.array_equal(skeleton.parents, rig.skeleton.parents):
         raise ParameterError(
-            f"{rig.name} already has other corrections of its joints; apply all corrections at "
+            f"{rig.name} already has other edits of its joints; apply all edits at "
             "once to the rig as it was loaded"
         )
 
 
-def restructured_skeleton(
-    old: Skeleton, corrections: Corrections
-) -> tuple[Skeleton, NDArray[np.int_]]:
-    """Return the skeleton that corrections make, its joints where they were, and their origin.
+def restructured_skeleton(old: Skeleton, edits: Edits) -> tuple[Skeleton, NDArray[np.int_]]:
+    """Return the skeleton that edits make, its joints where they were, and their origin.
 
     Returns shapes origin (j,).
     """
-    if not corrections.structural:
+    if not edits.structural:
         return old, np.arange(len(old.joints))
     removed = np.zeros(len(old.joints), np.bool_)
-    for name in corrections.removed:
+    for name in edits.removed:
         removed[joint_index(old, name)] = True
-    names = _names(old, removed, corrections)
+    names = _names(old, removed, edits)
     staying = np.flatnonzero(~removed)
     origin = np.concatenate([staying, np.full(len(names) - len(staying), -1)])
     if not len(origin):
-        raise SkeletonError(
-            "by the corrections no joint of the skeleton is left; keep at least one"
-        )
-    return _skeleton(old, removed, names, origin, corrections), origin
+        raise SkeletonError("by the edits no joint of the skeleton is left; keep at least one")
+    return _skeleton(old, removed, names, origin, edits), origin
 
 
-def _names(old: Skeleton, removed: NDArray[np.bool_], corrections: Corrections) -> list[str]:
+def _names(old: Skeleton, removed: NDArray[np.bool_], edits: Edits) -> list[str]:
     """Return the names of the joints that stay, and of those that are added."""
     now = list(old.names)
     fresh = []
-    for name, one in corrections.joints.items():
+    for name, one in edits.joints.items():
         if one.was is not None:
             joint = joint_index(old, one.was)
             if removed[joint]:
-                raise ParameterError(f'corrections both remove and rename the joint "{one.was}"')
+                raise ParameterError(f'edits both remove and rename the joint "{one.was}"')
             now[joint] = name
         if one.was is not None or one.added:
             fresh.append(name)
     names = [now[joint] for joint in np.flatnonzero(~removed)]
-    names += [name for name, one in corrections.joints.items() if one.added]
+    names += [name for name, one in edits.joints.items() if one.added]
     for name in fresh:
         if not name.strip():
             raise SkeletonError("a joint needs a name")
@@ -127,7 +123,7 @@ def _skeleton(
     removed: NDArray[np.bool_],
     names: list[str],
     origin: NDArray[np.int_],
-    corrections: Corrections,
+    edits: Edits,
 ) -> Skeleton:
     """Return the new skeleton; joints of the file keep their positions."""
     staying, count = origin[origin >= 0], len(names)
@@ -139,7 +135,7 @@ def _skeleton(
     joints, deform = np.zeros((count, 3)), np.ones(count, np.bool_)
     joints[: len(staying)], deform[: len(staying)] = old.joints[staying], old.deform[staying]
     for j, name in enumerate(names):
-        one = corrections.joints.get(name)
+        one = edits.joints.get(name)
         if one is None:
             continue
         if one.parent is not None:

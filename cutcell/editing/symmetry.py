@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
-from ..errors import MeshError
+from ..errors import MeshError, SkeletonError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
 
@@ -33,6 +33,11 @@ class Mirror:
     position: float  # where the plane cuts the axis, in the file's units
     vertex: NDArray[np.intp]  # (n,), itself on the plane
     joint: NDArray[np.intp]  # (j,)
+
+    @property
+    def swap(self) -> NDArray[np.intp]:
+        """The partner of each joint, shape (j,); itself without one."""
+        return np.where(self.joint < 0, np.arange(len(self.joint)), self.joint)
 
 
 def find_mirror(rig: Rig) -> Mirror:
@@ -61,6 +66,30 @@ def find_mirror(rig: Rig) -> Mirror:
     return best
 
 
+def joint_mirror(rig: Rig) -> Mirror:
+    """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
+
+    Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
+    """
+    joints = rig.skeleton.joints
+    if not len(joints):
+        raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
+    best, share = None, 0.0
+    tolerance = JOINT_TOLERANCE * mesh_diagonal(rig)
+    for axis, position, joint in mirror_planes(rig):
+        gap = reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
+        exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / tolerance
+        score = float((joint >= 0).mean()) + 0.1 * exact
+        if score > share:
+            best, share = Mirror(axis, position, np.empty(0, np.intp), joint), score
+    if best is None or (best.joint >= 0).mean() < MIN_SHARE:
+        raise SkeletonError(
+            f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
+            "joints have a partner on the other side"
+        )
+    return best
+
+
 def mesh_diagonal(rig: Rig) -> float:
     """Return the length of the diagonal of the mesh's bounding box."""
     return float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
@@ -78,34 +107,51 @@ def mirror_planes(rig: Rig) -> Iterator[tuple[int, float, NDArray[np.intp]]]:
                 yield axis, position, joint
 
 
-def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
-    """Average the weights of each vertex with its partner's, left and right exchanged.
+def mirrored(
+    weights: NDArray[np.float64],
+    mirror: Mirror,
+    points: NDArray[np.float64],
+    side: str = "both",
+    which: NDArray[np.intp] | None = None,
+) -> NDArray[np.float64]:
+    """Return weights of some vertices with those of their partners, left and right exchanged.
 
-    Shapes: weights (n, j); returns (n, j).
+    With "both" sides, each gets the mean of itself and its partner. "left" or "right" takes the
+    side with larger or smaller coordinates in place of the other; the plane gets the mean.
+    Vertices that follow a joint without a partner, or whose partner does, stay as they are.
+
+    Shapes: weights (n, j), points (n, 3), which (k,) or None for all; returns (k, j).
     """
-    alone = mirror.joint < 0
-    partner = mirror.vertex
-    follows_alone: NDArray[np.bool_] = np.asarray((weights[:, alone] > 0).any(axis=1))
-    paired = (partner >= 0) & ~follows_alone & ~follows_alone[partner]
-    result = weights.copy()
-    swap = np.where(alone, np.arange(len(alone)), mirror.joint)
-    result[paired] = (weights[paired] + weights[partner[paired]][:, swap]) / 2
-    return result
+    rows = weights.copy() if which is None else weights[which]
+    vertex = np.arange(len(weights)) if which is None else which
+    partner, alone = mirror.vertex[vertex], mirror.joint < 0
+    place = points[vertex, mirror.axis]
+    source = {"both": False, "left": place > mirror.position, "right": place < mirror.position}
+    takes = np.flatnonzero((partner >= 0) & ((partner == vertex) | ~np.asarray(source[side])))
+    other = weights[partner[takes]]
+    follows_alone = (rows[takes][:, alone] > 0).any(axis=1) | (other[:, alone] > 0).any(axis=1)
+    takes, other = takes[~follows_alone], other[~follows_alone]
+    other = other[:, mirror.swap]
+    mean = (partner[takes] == vertex[takes]) | (side == "both")
+    rows[takes] = np.where(mean[:, None], (rows[takes] + other) / 2, other)
+    return rows
 
 
-def balance(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
+def balanced(
+    rows: NDArray[np.float64], mirror: Mirror, which: NDArray[np.intp] | None = None
+) -> NDArray[np.float64]:
     """Remove the partner of a joint that pruning removed from a vertex on the plane.
 
-    Shapes: weights (n, j); returns (n, j).
+    Shapes: rows (k, j) of the vertices (k,), all for None; returns (k, j).
     """
-    middle = np.flatnonzero(mirror.vertex == np.arange(len(mirror.vertex)))
-    swap = np.where(mirror.joint < 0, np.arange(len(mirror.joint)), mirror.joint)
-    rows = weights[middle]
-    even = np.where(rows[:, swap] > 0, rows, 0.0)
+    vertex = np.arange(len(mirror.vertex)) if which is None else which
+    middle = np.flatnonzero(mirror.vertex[vertex] == vertex)
+    before = rows[middle]
+    even = np.where(before[:, mirror.swap] > 0, before, 0.0)
     total = even.sum(axis=1, keepdims=True)
-    before = rows.sum(axis=1, keepdims=True)
-    result = weights.copy()
-    result[middle] = np.divide(even * before, total, out=rows.copy(), where=total > 0)
+    whole = before.sum(axis=1, keepdims=True)
+    result = rows.copy()
+    result[middle] = np.divide(even * whole, total, out=before.copy(), where=total > 0)
     return result
 
 

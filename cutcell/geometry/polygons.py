@@ -80,7 +80,7 @@ def _projected(outlines: NDArray) -> NDArray:
     moved = moved / np.maximum(np.abs(moved).max(axis=(1, 2), keepdims=True), 1e-300)
     area = np.cross(moved, np.roll(moved, -1, axis=1)).sum(axis=1)
     normal = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300)
-    # Of the axes the one most askew to the normal gives the first direction of the plane.
+    # The axis that is most askew to the normal gives the first direction of the plane.
     axis = np.eye(3)[np.abs(normal).argmin(axis=1)]
     first = np.cross(axis, normal)
     first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-300)

@@ -143,10 +143,10 @@ def inside_intervals(
         for axis in range(3)
         for rays in _chunks(hits[axis], beyond_hits[axis], resolution)
     ]
-    kept = in_threads(keep, chunks, report)
+    intervals = in_threads(keep, chunks, report)
     inside = []
     for axis in range(3):
-        parts = [vars(part) for (of, _), part in zip(chunks, kept, strict=True) if of == axis]
+        parts = [vars(part) for (of, _), part in zip(chunks, intervals, strict=True) if of == axis]
         inside.append(
             InsideIntervals(**{n: np.concatenate([part[n] for part in parts]) for n in parts[0]})
         )

@@ -85,7 +85,7 @@ def _extent(points: NDArray[np.float64]) -> str:
 
 
 def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
-    """Return a skeleton, the matrix to its scene, and which joints deform, if the file says so."""
+    """Return a skeleton, the matrix to its scene, and which joints deform, if the file has that."""
     kind, world = path.suffix.lower(), np.eye(4)
     if kind == ".json":
         skeleton, says_deform = read_skeleton_json(path)

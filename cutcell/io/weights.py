@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import LocatedWarning
 from ..rig import Part, Rig, Skeleton, TriangleMesh
 from ..rig.deform_joints import deform_joints
 from ..rig.names import is_neutral
+from ..rig.rig import LARGE, normalised
 from ..runtime.display import listed
 from ..runtime.memory import check_matrix
 
-LARGE = 1e300
-"""Weights above it are scaled down before they are added: a sum must not overflow."""
 ROUNDING = 0.01
 """Sums of weights that are stored in 8 bits differ from one by up to this."""
 COPIES = 2
@@ -51,10 +51,11 @@ def summed(
     if not good.all():
         sums[rows[~good]] = np.nan
         bad = len(np.unique(rows[~good]))
-        warnings = (
+        text = (
             f"{owner}: {bad:,} of {shape[0]:,} vertices {'has' if bad == 1 else 'have'} weights "
-            "that are negative or not a number; these weights count as none",
+            "that are negative or not a number; these weights count as none"
         )
+        warnings = (LocatedWarning(text, "invalid-weights"),)
         rows, columns, values = rows[good], columns[good], values[good]
     if values.max(initial=0) > LARGE:
         top = np.zeros(shape[0])
@@ -76,26 +77,20 @@ def sum_warnings(
     is_used[faces] = True
     empty = is_used & (sums == 0)
     off = is_used & (sums > 0) & (np.abs(sums - 1) > ROUNDING)
-    warnings = []
-    for rows, what in (
-        (empty, "no weight, so that no joint moves them. `cutcell bind` gives them some"),
-        (off, "weights that do not sum to one. They are scaled so that they do"),
+    warnings: list[str] = []
+    nothing = "no weight, so that no joint moves them. `cutcell bind` gives them some"
+    scaled = "weights that do not sum to one. They are scaled so that they do"
+    for rows, what, code in (
+        (empty, nothing, "unweighted-vertices"),
+        (off, scaled, "unnormalised-weights"),
     ):
         counts = {part.name: int(rows[part.vertices].sum()) for part in parts}
         names = listed([f"{name}: {count:,}" for name, count in counts.items() if count])
         if rows.any():
             verb = "has" if rows.sum() == 1 else "have"
-            warnings.append(f"{rows.sum():,} of {is_used.sum():,} vertices ({names}) {verb} {what}")
+            text = f"{rows.sum():,} of {is_used.sum():,} vertices ({names}) {verb} {what}"
+            warnings.append(LocatedWarning(text, code))
     return warnings
-
-
-def normalised(weights: NDArray) -> NDArray[np.float64]:
-    """Scale each row to sum to one; rows of zero stay zero."""
-    if weights.max(initial=0) > LARGE:
-        top = weights.max(axis=1, keepdims=True)
-        weights = weights / np.where(top > 0, top, 1)
-    sums = weights.sum(axis=1, keepdims=True)
-    return np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
 
 
 KEY = "cutcell_deform"
@@ -117,14 +112,16 @@ def with_deform(
     """
     if not len(skeleton.joints):
         return skeleton, weights, []
-    neutral, warnings = neutral_joints(skeleton), []
+    neutral = neutral_joints(skeleton)
+    warnings: list[str] = []
     if weights is not None and weights[:, neutral].any():
         count = int((weights[:, neutral] > 0).any(axis=1).sum())
-        warnings.append(
+        text = (
             f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
             f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding "
             "gives them new weights"
         )
+        warnings.append(LocatedWarning(text, "unweighted-vertices"))
         weights = normalised(np.where(neutral, 0.0, weights))
     if stored is not None and neutral.any():
         stored = np.where(neutral, 0, stored)
@@ -158,9 +155,9 @@ def loaded_rig(
     """Return a rig of one part, with the joints that deform; see `with_deform`."""
     skeleton, weights, more = with_deform(mesh, skeleton, read.weights, stored)
     more += sum_warnings(read.sums, mesh.faces, [Part(name, slice(None))])
-    told = (*read.warnings, *warnings, *more)
+    notices = (*read.warnings, *warnings, *more)
     return Rig(
-        mesh, skeleton, weights, name=name, warnings=told, weight_sums=read.sums, source=source
+        mesh, skeleton, weights, name=name, warnings=notices, weight_sums=read.sums, source=source
     )
 
 
@@ -176,13 +173,18 @@ def _inferred(
     """Return which joints (j,) deform by the weights, else by names and places, and warnings."""
     total = 0.0 if weights is None else float(weights.sum())
     if weights is None or total == 0:
-        deform = deform_joints(mesh, skeleton).deform
-        if deform.all():
-            return deform, []
-        return deform, [
-            f"{(~deform).sum()} of {len(deform)} joints are taken for controls, end markers or "
-            f"roots and get no weight: {_names(skeleton, ~deform)}"
-        ]
+        guess, warnings = deform_joints(mesh, skeleton), []
+        if not guess.deform.all():
+            warnings.append(
+                f"{(~guess.deform).sum()} of {len(skeleton.names)} joints are taken for controls, "
+                f"end markers or roots and get no weight: {_names(skeleton, ~guess.deform)}"
+            )
+        if guess.doubtful.any():
+            warnings.append(
+                f"{guess.doubtful.sum()} joints that may be controls or end markers get weight: "
+                f"{_names(skeleton, guess.doubtful)}; exclude those that move no skin"
+            )
+        return guess.deform, warnings
     share = weights.sum(axis=0) / total
     carries = share > 0
     stray = carries & (share < STRAY)

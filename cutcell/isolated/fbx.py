@@ -54,8 +54,8 @@ def read(data):
             arrays = shape | colours | {"place": matrix(node.geometry_to_node)} | skin
             scene.add_mesh(node.name or mesh.name, place[node.element_id], arrays)
     add_clips(scene, file, place)
-    told = {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
-    return scene.arrays() | told
+    notices = {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
+    return scene.arrays() | notices
 
 
 def options():

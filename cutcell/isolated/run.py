@@ -38,7 +38,7 @@ def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
 
 
 class WorkFailedError(CutcellError):
-    """Work in a process of its own has no result; its caller says what that means."""
+    """Isolated work has no result; its caller reports what that means."""
 
 
 def run_isolated(

@@ -173,13 +173,13 @@ def unbound(bind):
 def influences(target, query, first, count):
     """Return what a mesh follows."""
     order = query.GetJointOrder()
-    own = target.GetJointOrder() or order
+    mesh_joints = target.GetJointOrder() or order
     binds = query.GetJointWorldBindTransforms()
     place = matrix(target.GetGeomBindTransform())
     at = {joint: k for k, joint in enumerate(order)}
-    joints = [at[joint] for joint in own if joint in at]
+    joints = [at[joint] for joint in mesh_joints if joint in at]
     stored = target.ComputeVaryingJointInfluences(count)
-    if stored is None or len(joints) != len(own) or len(binds) != len(order):
+    if stored is None or len(joints) != len(mesh_joints) or len(binds) != len(order):
         raise RuntimeError(f"{target.GetPrim().GetName()} is bound to joints that are not there")
     numbers, weights = (np.array(values).reshape(count, -1) for values in stored)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(joints)):

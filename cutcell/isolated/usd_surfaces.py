@@ -1,6 +1,6 @@
 """Normals, texture coordinates, materials and displayColor of the faces of USD meshes.
 
-Of materials, UsdPreviewSurface's diffuse colour and its image are read.
+The diffuse colour of a UsdPreviewSurface and its image are read.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ def surface(prim, faces, corners, polygons, scene, file):
     material = np.full(len(faces), number(binding, scene, file))
     for subset in binding.GetMaterialBindSubsets():
         members = np.array(subset.GetIndicesAttr().Get() or [], int)
-        own = number(UsdShade.MaterialBindingAPI(subset.GetPrim()), scene, file)
-        material[np.isin(polygons, members)] = own
+        subset_material = number(UsdShade.MaterialBindingAPI(subset.GetPrim()), scene, file)
+        material[np.isin(polygons, members)] = subset_material
     arrays: dict[str, np.ndarray] = {
         "materials": material,
         "dropped": dropped(prim, primvars, sets),
@@ -97,8 +97,8 @@ def add_image(connected, scene, file):
     if inside and Path(package).resolve() == file:
         content = packed(file, inside)
     elif Path(asset.resolvedPath).is_relative_to(file.parent):
-        beside = Path(asset.resolvedPath).relative_to(file.parent)
-        names = (beside.as_posix(), asset.path, "")
+        relative = Path(asset.resolvedPath).relative_to(file.parent)
+        names = (relative.as_posix(), asset.path, "")
     return scene.add_image(names, content)
 
 

@@ -198,6 +198,17 @@ def linear_blend_skinning(
     ParameterError
         Shapes that do not fit each other.
     """
+    points, shares, matrices = checked_skinning(vertices, weights, transforms)
+    blended = (shares @ matrices[:, :3].reshape(-1, 12)).reshape(-1, 3, 4)
+    posed = np.einsum("nab,nb->na", blended[:, :, :3], points) + blended[:, :, 3]
+    is_weighted = np.abs(shares).sum(axis=1, keepdims=True) > 0
+    return np.where(is_weighted, posed, points)
+
+
+def checked_skinning(
+    vertices: ArrayLike, weights: ArrayLike, transforms: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return vertices (n, 3), weights (n, j) and matrices (j, 4, 4) if they fit each other."""
     points = np.asarray(vertices, np.float64)
     shares = np.asarray(weights, np.float64)
     matrices = np.asarray(transforms, np.float64)
@@ -210,7 +221,4 @@ def linear_blend_skinning(
         )
     if len(shares) != len(points):
         raise ParameterError(f"{len(points)} vertices but {len(shares)} rows of weights")
-    blended = (shares @ matrices[:, :3].reshape(-1, 12)).reshape(-1, 3, 4)
-    posed = np.einsum("nab,nb->na", blended[:, :, :3], points) + blended[:, :, 3]
-    is_weighted = np.abs(shares).sum(axis=1, keepdims=True) > 0
-    return np.where(is_weighted, posed, points)
+    return points, shares, matrices

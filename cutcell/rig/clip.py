@@ -142,8 +142,8 @@ class Clip(Derived):
     def moved(self, parents: NDArray[np.int32], by: NDArray[np.float64]) -> Clip:
         """Return the same motion of joints that stand elsewhere at rest.
 
-        Each turns as before, about its new place. Where it shifts against its parent it goes on to
-        do so by as much as before.
+        Each turns as before, about its new place. Where it shifts against its parent it
+        shifts by as much as before.
 
         Parameters
         ----------

@@ -18,6 +18,10 @@ from .skeleton import Skeleton
 
 FAR_OUTSIDE = 10.0
 """A joint this many bounding-box diagonals away from the mesh is in another unit."""
+ROUNDING = 1e-12
+"""Rows of weights whose sums differ less from one are taken as they are."""
+LARGE = 1e300
+"""The sum of larger weights may overflow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +40,7 @@ class Attachment:
 
 @dataclass(frozen=True)
 class Part:
-    """One of the meshes that a file holds under names of their own: some vertices of the rig.
+    """One of the named meshes of a file: some vertices of the rig.
 
     Parameters
     ----------
@@ -70,7 +74,7 @@ class Rig(Summarized):
         All skinned meshes of the file, one after the other, vertices in the file's order.
     skeleton : Skeleton
     weights : array_like, shape (n, j), float64, optional
-        Not negative; rows sum to one, or to zero where a vertex has no weight.
+        Not negative. Rows are scaled to sum to one; a row of zeros is a vertex without weight.
     clips : tuple of Clip
     attachments : tuple of Attachment
     name : str
@@ -78,7 +82,7 @@ class Rig(Summarized):
         From the rig's space to the scene's, where y is up. For looking, not for computing.
     allowed : array_like, shape (n, j), bool, optional
         Which joints the file can store for which vertex; None when all. A glTF primitive
-        can only name the joints of its own skin.
+        can only name the joints of that skin.
     parts : tuple of Part
         The meshes that `mesh` is made of, by name; the whole as one part when left out.
     left_out : tuple of LeftOut
@@ -86,13 +90,13 @@ class Rig(Summarized):
     warnings : tuple of str
         What a person should know of how the file was read, in sentences.
     weight_sums : array, shape (n,), float64, optional
-        What the weights of each vertex summed to in the file, before they were scaled to one;
-        NaN where some were negative or no numbers. None where `weights` are not the file's.
+        What the weights of each vertex summed to before they were scaled to one; NaN where some
+        were negative or no numbers in the file. None where they summed to one.
     origin : array_like, shape (j,), int32, optional
         Which joint of the file each one is, -1 where joints were added; None where the skeleton
-        is the file's. See `corrected_rig`.
+        is the file's. See `edited_rig`.
     original : Skeleton, optional
-        The skeleton before corrections added, removed, renamed or reparented joints.
+        The skeleton before edits added, removed, renamed or reparented joints.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -153,6 +157,14 @@ class Rig(Summarized):
                     f"vertex {bad[0]} has a weight that is negative or not a number; "
                     f"{len(bad)} of {len(weights)} vertices are so"
                 )
+            with np.errstate(over="ignore"):
+                sums = weights.sum(axis=1)
+            is_off = (np.abs(sums - 1) > ROUNDING) & (sums > 0)
+            if is_off.any():
+                weights = weights.copy()
+                weights[is_off] = normalised(weights[is_off])
+                if self.weight_sums is None:
+                    object.__setattr__(self, "weight_sums", frozen(sums))
             object.__setattr__(self, "weights", frozen(weights))
         if self.allowed is not None:
             allowed = as_array(self.allowed, np.bool_, shape, "allowed", WeightsError)
@@ -232,3 +244,12 @@ class Rig(Summarized):
                 f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
                 f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
             )
+
+
+def normalised(weights: NDArray) -> NDArray[np.float64]:
+    """Scale each row to sum to one; rows of zero stay zero."""
+    if weights.max(initial=0) > LARGE:
+        top = weights.max(axis=1, keepdims=True)
+        weights = weights / np.where(top > 0, top, 1)
+    sums = weights.sum(axis=1, keepdims=True)
+    return np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)

@@ -8,21 +8,23 @@ from numpy.typing import NDArray
 
 def relative(transforms: NDArray, parents: NDArray) -> NDArray[np.float64]:
     """Return transforms (..., j, 4, 4) relative to those of the parents (j,); roots' stay."""
-    own, held = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
-    own[..., held, :, :] = inverses(transforms[..., parents[held], :, :]) @ own[..., held, :, :]
-    return own
+    local, lower = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
+    local[..., lower, :, :] = (
+        inverses(transforms[..., parents[lower], :, :]) @ local[..., lower, :, :]
+    )
+    return local
 
 
-def composed(own: NDArray, parents: NDArray) -> NDArray[np.float64]:
+def composed(local: NDArray, parents: NDArray) -> NDArray[np.float64]:
     """Put every ancestor's transform in front of each joint's own (..., j, 4, 4), by doubling.
 
     After step k each joint holds the product over its nearest 2^k ancestors, in any order.
     """
-    transforms, above = own.astype(np.float64), parents.copy()
-    while (held := np.flatnonzero(above >= 0)).size:
-        before = transforms[..., above[held], :, :]
-        transforms[..., held, :, :] = before @ transforms[..., held, :, :]
-        above[held] = above[above[held]]
+    transforms, above = local.astype(np.float64), parents.copy()
+    while (descendants := np.flatnonzero(above >= 0)).size:
+        before = transforms[..., above[descendants], :, :]
+        transforms[..., descendants, :, :] = before @ transforms[..., descendants, :, :]
+        above[descendants] = above[above[descendants]]
     return transforms
 
 

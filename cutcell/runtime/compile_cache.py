@@ -195,11 +195,24 @@ def folders() -> tuple[Path, ...]:
     return tuple(Path(base, _set_name()) for base in bases)
 
 
+def _processor() -> tuple[str, str]:
+    """Return the processor that functions are compiled for, by name and features.
+
+    With NUMBA_CPU_NAME=generic they run on all processors of a kind, as those of a container must.
+    """
+    settings = vars(config)
+    features = settings["CPU_FEATURES"]
+    return (
+        settings["CPU_NAME"] or binding.get_host_cpu_name(),
+        get_host_cpu_features() if features is None else features,
+    )
+
+
 @cache
 def _set_name() -> str:
     """Name the set of functions by compiler, processor and sources."""
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
-    processor = sys.platform, binding.get_host_cpu_name(), get_host_cpu_features()
+    processor = sys.platform, *_processor()
     parts = repr((compiler, processor, source_digest(PACKAGE)))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"
 

@@ -65,8 +65,8 @@ def _limited_groups() -> tuple[Path, ...]:
     groups = []
     with suppress(OSError, StopIteration):
         lines = OWN_CGROUP.read_text().splitlines()
-        own = CGROUPS / next(line[4:] for line in lines if line.startswith("0::/"))
-        for group in (own, *own.parents):
+        innermost = CGROUPS / next(line[4:] for line in lines if line.startswith("0::/"))
+        for group in (innermost, *innermost.parents):
             with suppress(OSError, ValueError):  # no such file; or the limit is the word "max"
                 _free_in(group)
                 groups.append(group)

@@ -43,7 +43,7 @@ class _Output(io.TextIOWrapper):
 def checked_output() -> Iterator[None]:
     """Raise `OutputError` in this block, or at its end, where standard output is full or closed.
 
-    What its encoding lacks is escaped.
+    Characters that its encoding lacks are escaped.
     """
     before, output = sys.stdout, _open()
     sys.stdout = output

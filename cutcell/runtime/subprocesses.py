@@ -9,7 +9,7 @@ from pathlib import Path
 def python_environment() -> dict[str, str]:
     """Return an environment in which another Python finds the packages that this one does.
 
-    Whatever lies in the folder that it is started in takes the place of none.
+    Files in its working folder replace none of them.
     """
     path = os.pathsep.join(filter(None, sys.path))
     return {**os.environ, "PYTHONPATH": path, "PYTHONSAFEPATH": "1"}

@@ -29,7 +29,7 @@ POLL_EVERY = 0.1
 MAX_ABANDONED = 3
 """Largest number of threads whose cancelled work still runs."""
 
-_here = threading.local()
+_thread = threading.local()
 _abandoned: WeakSet[threading.Thread] = WeakSet()
 
 
@@ -41,7 +41,7 @@ def threads() -> int:
 def in_threads(
     work: Callable[[Item], Result],
     items: Iterable[Item],
-    tell: Callable[[float], None] = lambda done: None,
+    report: Callable[[float], None] = lambda done: None,
 ) -> list[Result]:
     """Apply `work`, which should spend its time in nogil kernels, to each item in parallel.
 
@@ -57,21 +57,21 @@ def in_threads(
             for index, item in waiting:
                 results[index] = work(item)
                 with telling:
-                    tell(len(results) / len(items))
+                    report(len(results) / len(items))
         except BaseException:
             for _ in waiting:  # leave none to the others
                 pass
             raise
 
-    if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
+    if len(items) < 2 or threads() < 2 or getattr(_thread, "is_worker", False):
         take()
         return [results[index] for index in range(len(items))]
     helpers = [_pool(threads() - 1).submit(take) for _ in range(min(threads(), len(items)) - 1)]
-    _here.is_worker = True
+    _thread.is_worker = True
     try:
         take()
     finally:
-        _here.is_worker = False
+        _thread.is_worker = False
         started = [helper for helper in helpers if not helper.cancel()]
         for helper in started:
             helper.exception()  # wait for all, whatever one of them raises
@@ -91,7 +91,7 @@ def submit(work: Callable[[], Result]) -> Callable[[], Result]:
 
     If no thread has started it by then, it runs in the thread that waits.
     """
-    if threads() < 2 or getattr(_here, "is_worker", False):
+    if threads() < 2 or getattr(_thread, "is_worker", False):
         return work
     task = _pool(threads() - 1).submit(work)
     return lambda: work() if task.cancel() else task.result()
@@ -104,13 +104,17 @@ def cancellable(work: Callable[[Progress], Result], progress: Progress, first_st
     second, and passes on at once what `progress` raises. The work then ends at its next report,
     with no one waiting for it. While `MAX_ABANDONED` such threads run, new work waits.
     """
-    if progress is silent or getattr(_here, "is_worker", False) or getattr(_here, "is_run", False):
+    if (
+        progress is silent
+        or getattr(_thread, "is_worker", False)
+        or getattr(_thread, "is_run", False)
+    ):
         return work(progress)
     relay, result = _Relay(progress, first_stage), Future[Result]()
     context = copy_context()
 
     def run() -> None:
-        _here.is_run = True
+        _thread.is_run = True
         try:
             result.set_result(context.run(work, relay.report))
         except BaseException as error:
@@ -169,7 +173,7 @@ def _pool(count: int) -> ThreadPoolExecutor:
 
 
 def _mark_worker() -> None:
-    _here.is_worker = True
+    _thread.is_worker = True
 
 
 # A forked process would inherit the pool, but none of its threads.

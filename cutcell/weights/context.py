@@ -49,6 +49,9 @@ class Context:
         True if `weights` has a row for each vertex instead of each welded vertex.
     seconds : dict of str to float
         Time taken by each stage.
+    scaled : bool
+        False to keep the largest weights of each vertex as they are: then fewer can be kept later,
+        and scaled, with the very result of keeping fewer at once.
     """
 
     method: Method
@@ -63,6 +66,7 @@ class Context:
     weights: NDArray[np.float64] = PENDING
     is_per_vertex: bool = False
     seconds: dict[str, float] = field(default_factory=dict)
+    scaled: bool = True
 
     def report(self, done: float) -> None:
         """Report the fraction of the stage "weights" that is done."""

@@ -23,15 +23,16 @@ def prune(
     threshold: float,
     priority: NDArray[np.intp],
     report: Tell = lambda done: None,
+    scaled: bool = True,
 ) -> NDArray[np.float64]:
-    """Keep the largest weights of each vertex and make them sum to one again.
+    """Keep the largest weights of each vertex and make them sum to one again, if `scaled`.
 
     Shapes: weights (n, j), priority (j,); returns (n, j).
     """
     most = weights.shape[1] if max_influences is None else max_influences
     pruned = np.zeros(weights.shape)
     in_threads(
-        lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
+        lambda part: _prune(weights[part], most, threshold, priority, scaled, pruned[part]),
         parts(len(weights), threads() + weights.size // A_PART),
         report,
     )
@@ -39,14 +40,14 @@ def prune(
 
 
 @compiled
-def _prune(weights, most, threshold, priority, pruned):
+def _prune(weights, most, threshold, priority, scaled, pruned):
     joints = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
-        _keep_largest(weights[v], most, threshold, priority, joints, pruned[v])
+        _keep_largest(weights[v], most, threshold, priority, scaled, joints, pruned[v])
 
 
 @compiled
-def _keep_largest(row, most, threshold, priority, joints, pruned):
+def _keep_largest(row, most, threshold, priority, scaled, joints, pruned):
     """Prune one vertex, see `prune`. `pruned` is zero; `joints` is scratch space for all joints."""
     count = 0
     for joint in priority:
@@ -71,4 +72,4 @@ def _keep_largest(row, most, threshold, priority, joints, pruned):
         count -= 1
         total -= row[joints[count]]
     for k in range(count):
-        pruned[joints[k]] = row[joints[k]] / total
+        pruned[joints[k]] = row[joints[k]] / total if scaled else row[joints[k]]

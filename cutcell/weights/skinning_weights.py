@@ -15,7 +15,6 @@ from ..runtime.progress import Progress, Tell, share_of, silent
 from ..runtime.threads import in_threads, parts, threads
 from .adjustments import Adjustments
 from .context import Context, Step, run
-from .learned.shares import LEARNED_STEP
 from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff.pipeline import RIG_STEPS
@@ -43,14 +42,14 @@ def skinning_weights(
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
-        Arrays that `bind` makes of `Corrections`.
+        Arrays that `bind` makes of the gains and radii in `Computed`.
     surface : SurfaceOperators, optional
         Operators of the graph's mesh; computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
         Single options of the method: `falloff` ("paper" is equation 1, "rig" is made to animate
-        with, see docs/falloff.md), `refine`, `alpha`, `max_influences`, `threshold`.
+        with, see docs/falloff.md), `alpha`, `max_influences`, `threshold`.
 
     Returns
     -------
@@ -68,6 +67,8 @@ def skinning_weights(
     """
     method = method_of(method, **options)
     measured, needed = distances.nearest_joints, method.joints_needed
+    if method.falloff == "paper":
+        needed = method.max_influences  # fewer than are measured by default, if that is wanted
     if measured is not None and (needed is None or needed > measured):
         raise ParameterError(
             f"max_influences is {method.max_influences}, but the distances were measured from the "
@@ -87,8 +88,6 @@ def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tu
     falloff: tuple[Step, ...] = (
         (Step("falloff", equation_1),) if method.falloff == "paper" else RIG_STEPS
     )
-    if method.refine == "learned":
-        falloff = (RIG_STEPS[0], LEARNED_STEP, *RIG_STEPS[1:])
     expand, normalise = Step("vertices", per_vertex), Step("normalise", limit)
     if allowed is None:
         return (*falloff, normalise, expand)
@@ -119,7 +118,8 @@ def limit(context: Context) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex."""
     most, threshold = context.method.max_influences, context.method.threshold
     order = _by_position(context.distances)
-    return prune(context.weights, most, threshold, order, share_of(context.report, 0.8, 0.9))
+    report = share_of(context.report, 0.8, 0.9)
+    return prune(context.weights, most, threshold, order, report, context.scaled)
 
 
 def per_vertex(context: Context) -> NDArray[np.float64]:

@@ -110,7 +110,7 @@ def _compile_after(graph: CutCellGraph) -> None:
     methods = ANIMATION, ANIMATION.with_options(falloff="paper")
     for method in methods:  # which measure from different numbers of joints
         distances = bone_distances(graph, chain(), method=method, leaf="fit", within=RIG_REACH)
-    for method in (*methods, ANIMATION.with_options(refine="learned")):
+    for method in methods:
         skinning_weights(distances, method=method)
     every = np.ones(distances.joint.shape[::-1], bool)
     skinning_weights(distances, method=method, allowed=every)

@@ -18,17 +18,25 @@ from ...rig import Skeleton
 from .face import face_parts
 from .probe import BodyProbe
 from .rest_axis import rest_directions
+from .twists import with_twists_in_chain
 
+BODY = 0.7
+"""A mesh with a smaller part of its deforming joints in it is a garment without its body."""
 SAME_PLACE = 1e-6
 """Largest distance of coincident joints, relative to the longest side."""
 ONWARD = 0.5
 """Cosine: a child within 60 degrees of the rest axis continues the bone; others branch off."""
-SIDE_BRANCH = 3.0
-"""A branch this many times as far away as the child that continues the bone is no bone."""
+ON_AXIS = 0.98
+"""Cosine: the direction of a child that lies on the rest axis itself."""
+SIDE_BRANCH = 2.0
+"""Where a child lies on the rest axis, no bone to another is more than this many times as long."""
 PASSES = 0.1
 """A bone to a child that passes another child nearer than this part of its length is none."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
+LONGEST = 3.0
+"""Length of a bone whose end is a guess over that of its parent's bone, at most: a head that looks
+back along its body is not as long as the body, and an end marker may be anywhere."""
 LENGTH = 1.1
 """The length of an inferred bone over that of the bone that it continues, at most: the halves of a
 limb are about equally long."""
@@ -51,7 +59,7 @@ class Chains:
     joints : array, shape (j, 3)
         In the unit cube.
     near : array, shape (j,), bool
-        Joints in the body or right beside it.
+        Joints in the body or right beside it; all joints of a garment alone.
     direction : array, shape (j, 3)
         Unit vector of the bone that ends at each joint; zero if there is none.
     rest : array, shape (j, 3), or None
@@ -92,8 +100,10 @@ def find_chains(
 
     Shapes: joints (j, 3), together (j, j): which joints one skin holds.
     """
+    skeleton, joints = with_twists_in_chain(skeleton, joints)
     near = probe.near(joints)
-    near |= _leads_in(skeleton, joints, near, probe)
+    if near[skeleton.deform].mean() < BODY:
+        near[:] = True  # the joints are where the body would be
     same = cdist(joints, joints) < SAME_PLACE
     if not _has_bones(skeleton):
         parents = _inferred_tree(skeleton, joints, near, probe)
@@ -101,28 +111,11 @@ def find_chains(
     direction, length = _directions(skeleton, joints, near, same, probe)
     rest = rest_directions(skeleton, joints)
     in_face, in_eye = face_parts(skeleton)
-    ends = _ends(skeleton, joints, near, same, rest, in_face)
+    ends = _ends(skeleton, joints, near, same, length, rest, in_face)
     inferred = _inferred_bones(
         skeleton, joints, near, direction, length, ends, same, together, probe
     )
     return Chains(joints, near, direction, rest, length, ends, inferred, in_face, in_eye)
-
-
-def _leads_in(
-    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
-) -> NDArray[np.bool_]:
-    """Find joints outside the body that begin a bone into it, such as one in an open mouth.
-
-    They have one child, which is in the body, unlike a root on the ground, on which feet hang, too.
-    """
-    only = [len(children) == 1 for children in skeleton.children]
-    candidates = np.flatnonzero(skeleton.deform & ~near & only)
-    child = np.array([skeleton.children[j][0] for j in candidates], np.intp)
-    leads = np.zeros(len(joints), np.bool_)
-    leads[candidates] = near[child] & (
-        probe.inner_part(joints[candidates], joints[child]) >= IN_BODY
-    )
-    return leads
 
 
 def _has_bones(skeleton: Skeleton) -> bool:
@@ -160,18 +153,24 @@ def _ends(
     joints: NDArray[np.float64],
     near: NDArray[np.bool_],
     same: NDArray[np.bool_],
+    length: NDArray[np.float64],
     rest: NDArray[np.float64] | None,
     in_face: NDArray[np.bool_],
 ) -> tuple[list[int], ...]:
     """List where the bones of each joint end; a leaf bone ends at the joint itself.
 
     Bones run to the joint's children, see `_branches`. A head whose children are all in the face
-    has a leaf bone besides. A joint outside the body has no bone.
+    has a leaf bone besides. A joint outside the body has no bone, and an end marker far off is no
+    end.
     """
     ends: tuple[list[int], ...] = tuple([] for _ in joints)
     child, parent = np.arange(len(joints)), skeleton.parents
     leads = (parent >= 0) & (skeleton.deform | near) & ~same[parent, child]
     leads &= (skeleton.deform & near)[parent]
+    is_marker = ~skeleton.deform & ~np.isin(child, parent) & (length[parent] > 0)
+    leads &= ~is_marker | (
+        np.linalg.norm(joints - joints[parent], axis=1) <= LONGEST * length[parent]
+    )
     for k in np.flatnonzero(leads).tolist():
         ends[parent[k]].append(k)
     for j, children in enumerate(ends):
@@ -194,16 +193,18 @@ def _branches(
     away = joints[children] - joints[joint]
     length = np.linalg.norm(away, axis=1)
     along = away @ away.T / length[:, None] ** 2
-    beside = np.linalg.norm(away - along[:, :, None] * away[:, None], axis=2)
+    offset = np.linalg.norm(away - along[:, :, None] * away[:, None], axis=2)
     between = (along > PASSES) & (along < 1 - PASSES)
-    is_bone = ~(between & (beside < PASSES * length[:, None])).any(axis=1)
+    is_bone = ~(between & (offset < PASSES * length[:, None])).any(axis=1)
     leaf = []
     if axis is not None:
         cosine = away @ axis / length
         if cosine.max() < ONWARD:
             leaf = [joint]
         else:
-            is_bone &= length <= SIDE_BRANCH * length[cosine.argmax()]
+            on_axis = cosine > ON_AXIS
+            if on_axis.any():
+                is_bone &= length <= SIDE_BRANCH * length[on_axis].max()
     return np.array(children)[is_bone].tolist() + leaf
 
 
@@ -229,10 +230,7 @@ def _inferred_bones(
     is_end[[k for j, those in enumerate(ends) for k in those if k != j]] = True
     arriving = (same & together) @ is_end.astype(int)
     has_bone = (same & together) @ np.array([len(those) > 0 for those in ends])
-    # A root whose chain forks is the trunk of something else.
-    forks = np.array([len(those) > 1 for those in ends])
-    is_trunk = skeleton.subtree @ forks
-    on_control = np.where(parents >= 0, ~(deform & near)[parents], ~is_trunk)
+    on_control = (parents < 0) | ~(deform & near)[parents]
     goals = np.flatnonzero(deform & on_control & (arriving == 0))
     leaves = np.flatnonzero(deform & (length > 0) & (arriving == 1) & ~has_bone)
     away = joints[goals] - joints[leaves, None]
@@ -243,26 +241,21 @@ def _inferred_bones(
     leaf, goal = fits.nonzero()
     fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[goals[goal]]) == 1
     distance = np.where(fits, far, np.inf)
-    choice = _clear_choice(distance, joints[goals])
+    choice = _clear_choice(distance)
     suits = np.arange(len(goals)) == choice[:, None]
-    suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
+    suitor = _clear_choice(np.where(suits, distance, np.inf).T)
     for k in np.flatnonzero(suitor >= 0):
         inferred[leaves[suitor[k]]].append(int(goals[k]))
     return inferred
 
 
-def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Find the nearest candidate of each, shape (n,); -1 if another one is about as near.
-
-    Shapes: far (n, m), places (m, 3).
-    """
+def _clear_choice(far: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Find the nearest of each of n rows of candidates; -1 if another one is about as near."""
     if far.size == 0:
         return np.full(len(far), -1)
-    first = far.argmin(axis=1)
     least = far.min(axis=1)
-    elsewhere = (cdist(places, places) >= SAME_PLACE)[first]
-    next_best = np.where(elsewhere, far, np.inf).min(axis=1)
-    return np.where((least < np.inf) & (next_best > CLEARLY * least), first, -1)
+    is_clear = (least < np.inf) & ((far <= CLEARLY * least[:, None]).sum(axis=1) == 1)
+    return np.where(is_clear, far.argmin(axis=1), -1)
 
 
 def _inferred_tree(

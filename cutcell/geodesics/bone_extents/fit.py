@@ -1,8 +1,9 @@
 """Bone extents fitted to the body: where bones end, which files seldom say.
 
 A joint is where a bone begins. Where the bone ends is known only if one child continues it. All
-others are leaf bones: each runs on until it leaves the body, or comes nearer to another bone. Once
-the skin nearest to it is known, it is aimed at the middle of that skin.
+others are leaf bones: each runs on until it leaves the body, or comes nearer to another bone. Where
+no rest axis is known, its direction is a guess, so it is aimed at the middle of the skin that is
+nearest to it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from ...graph import CutCellGraph
 from ...rig import Skeleton
 from ..bones import Bones
 from ..nearest import NodeTree
-from .chains import SAME_PLACE, Chains, find_chains
+from .chains import LONGEST, SAME_PLACE, Chains, find_chains
 from .probe import BodyProbe
 from .skins import characters, share_a_skin
 
@@ -31,9 +32,6 @@ REGION_WITHIN = 1.25
 share of it would be a hundredth."""
 REGION_POWER = 20
 """Skin is shared among joints by this power of the nearest distance over their own."""
-PART_OF_REACH = 0.5
-"""A bone along a rest axis ends half-way to where it would leave the body: further out the skin is
-close to its end."""
 MIN_CELLS = 2.0
 """Lattice cells of the character alone: such a bone is at least this long, if the body is still
 near there. Shorter ones have hardly any direction."""
@@ -96,11 +94,11 @@ def _fit_character(
     onward = chains.onward[leaves]
     reach = probe.exit_distance(chains.joints[leaves], onward)
     bones.end[leaf] += onward * reach[:, None]
-    length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe, size)
+    length = _leaf_lengths(bones, leaf, chains, reach, probe, size)
     length[chains.in_eye[leaves]] = 0
     bones.end[leaf] = chains.joints[leaves] + onward * length[:, None]
     aimed = leaf.copy()
-    aimed[leaf] = ~on_axis & chains.near[leaves] & ~chains.in_eye[leaves]
+    aimed[leaf] = (chains.rest is None) & chains.near[leaves] & ~chains.in_eye[leaves]
     inferred = tuple(
         (int(number[j]), int(number[k])) for j, goals in enumerate(chains.inferred) for k in goals
     )
@@ -114,23 +112,22 @@ def _leaf_lengths(
     reach: NDArray[np.float64],
     probe: BodyProbe,
     size: float,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Measure the lengths of the leaf bones of a character with this longest side.
+) -> NDArray[np.float64]:
+    """Measure the lengths (t,) of the leaf bones of a character with this longest side.
 
     Each ends where it leaves the body (`reach`), or where it comes nearer, through the body, to
     the bone of another joint than to its own joint: a jaw does not continue through the skull.
-
-    Returns shapes length (t,), on_axis (t,).
     """
     joint = bones.joint[leaf]
     place, onward = chains.joints[joint], chains.onward[joint]
     length = probe.distance_to_others(place, onward, reach, _others(bones, leaf, chains))
     if chains.rest is None:
-        return length, np.zeros(len(joint), np.bool_)
-    length *= PART_OF_REACH
+        return length
+    before = chains.length[joint]
+    length = np.minimum(length, np.where(before > 0, LONGEST * before, np.inf))
     least = MIN_CELLS * size / probe.resolution
-    on_axis = probe.near(place + onward * least) | (length > least)
-    return np.where(on_axis, np.maximum(length, least), length), on_axis
+    is_long = probe.near(place + onward * least) | (length > least)
+    return np.where(is_long, np.maximum(length, least), length)
 
 
 def _others(

@@ -15,17 +15,20 @@ MIN_BONES = 3
 """Fewer bones are no evidence."""
 SHORTEST = 1e-3
 """Length, relative to the longest side, below which a bone has no direction."""
+ALIKE = 1e-3
+"""Largest difference of the axes of joints that are oriented alike."""
 
 
 def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """Find the local axis along which the bones of joints point, and its direction at each joint.
 
     Modelling programs orient joints so that one local axis, nearly always +Y, runs along the bone.
-    Joints with one child show which axis it is; leaf joints have it, too.
+    Joints with one child show which axis it is; leaf joints have it, too. Joints that are all
+    oriented alike, as exporters leave them that know no orientation, have none.
 
     Shapes: joints (j, 3); returns (j, 3).
     """
-    if skeleton.orientations is None:
+    if skeleton.orientations is None or np.ptp(skeleton.orientations, axis=0).max() < ALIKE:
         return None
     local = []
     for j, children in enumerate(skeleton.children):

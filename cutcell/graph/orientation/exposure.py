@@ -140,7 +140,7 @@ def _escape(
 
 
 @compiled
-def _hide(points, own, free, grid, vertices, faces, f):
+def _hide(points, face_of, free, grid, vertices, faces, f):
     """Mark the rays that faces from f on hide; stop where half of the points are hidden.
 
     In a soup a few faces hide nearly all points. Returns the next face.
@@ -158,7 +158,7 @@ def _hide(points, own, free, grid, vertices, faces, f):
             last = start[i * columns + int(high_v * columns) + 1]
             for k in range(first, last):
                 pu, pv = points[k, 0], points[k, 1]
-                if own[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
+                if face_of[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
                     continue
                 if not (free[k, 0] or free[k, 1]):
                     continue

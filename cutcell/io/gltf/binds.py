@@ -174,13 +174,13 @@ def _first_below(skin: BoundSkin) -> list[int]:
 
 
 def _far_limit(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> float:
-    """Return how far off a joint is whose matrix is wrong, though it has one of its own."""
+    """Return the distance beyond which a stored matrix of a joint is wrong."""
     limit = max(FAR, FARTHER * float(shifts.max()))
-    own = np.flatnonzero(~skin.is_held & ~skin.is_blank)
-    if skin.stands is None or not len(own):
+    stored = np.flatnonzero(~skin.is_held & ~skin.is_blank)
+    if skin.stands is None or not len(stored):
         return limit
-    bound = _moved(skin.frames[own, :3, 3], skin.stands)
-    off = np.linalg.norm(bound - skin.world[own, :3, 3], axis=1) / (size * skin.scale)
+    bound = _moved(skin.frames[stored, :3, 3], skin.stands)
+    off = np.linalg.norm(bound - skin.world[stored, :3, 3], axis=1) / (size * skin.scale)
     # Where many are off, these nodes are in no pose of the bound character.
     return limit if (off > limit).sum() <= skin.is_trusted.sum() / 2 else np.inf
 
@@ -245,10 +245,10 @@ def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.flo
     box = np.eye(4)
     box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, np.finfo(float).tiny))
     box[:3, 3] = corners.mean(axis=0)
-    moved, there = (matrices @ box)[:, :3], (other @ box)[:3]
+    moved, reference = (matrices @ box)[:, :3], (other @ box)[:3]
     sizes = np.linalg.norm(moved[..., :3], axis=(1, 2))
-    sizes = np.maximum(np.maximum(sizes, np.linalg.norm(there[:, :3])), np.finfo(float).tiny)
-    distances: NDArray[np.float64] = np.linalg.norm(moved - there, axis=(1, 2)) / sizes
+    sizes = np.maximum(np.maximum(sizes, np.linalg.norm(reference[:, :3])), np.finfo(float).tiny)
+    distances: NDArray[np.float64] = np.linalg.norm(moved - reference, axis=(1, 2)) / sizes
     return distances
 
 

@@ -50,7 +50,7 @@ class Document:
         self.allow()
 
     def allow(self) -> None:
-        """Count anew what may be taken to read it, by the size that it has now."""
+        """Reset the memory budget of reading by the present size."""
         self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
 
     def forget(self) -> None:
@@ -183,7 +183,7 @@ def _split_chunks(data: bytes) -> tuple[bytes, bytes | None, list[tuple[int, byt
 
 
 def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
-    """Return the JSON object in a text, and what is to be told of it."""
+    """Return the JSON object in a text, and warnings about it."""
     warnings = []
     try:
         document = json.loads(text.decode("utf-8-sig").rstrip("\0"), parse_constant=_no_constant)

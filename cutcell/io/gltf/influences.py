@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..weights import KEY, normalised
+from ...rig.rig import normalised
+from ..weights import KEY
 from .buffer import BufferWriter
 from .container import Document
 

@@ -37,8 +37,8 @@ def join_corners(
     """
     normals, places = np.zeros((len(faces), 3, 3)), np.zeros((len(faces), 3, 2), np.float32)
     has_normals = has_places = False
-    for surface, own, rows, matrix in pieces:
-        where = stored_corners(surface.faces, own)
+    for surface, triangles, rows, matrix in pieces:
+        where = stored_corners(surface.faces, triangles)
         if where is None:
             continue
         if surface.places is not None:

@@ -100,7 +100,7 @@ def _with_looks(
 
 
 def _take(view: Document, number: int, look: _Look, palette: Palette) -> _Mesh:
-    """Take out of a mesh what is to be stored anew."""
+    """Remove from a mesh the data that is stored again."""
     (primitive,) = view.json["meshes"][number]["primitives"]
     named = primitive["attributes"]
     count = view.json["accessors"][named["POSITION"]]["count"]

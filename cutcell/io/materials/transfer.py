@@ -92,8 +92,8 @@ def read_corners(rig: Rig) -> Corners:
                 return Corners()
             surface = _stored_surface(rig.source.document, one)
             if surface is not None:
-                own = faces[one.rows] - one.first_vertex
-                pieces.append((surface, own, one.rows, rig.source.placed[one.node]))
+                triangles = faces[one.rows] - one.first_vertex
+                pieces.append((surface, triangles, one.rows, rig.source.placed[one.node]))
     return join_corners(rig.mesh.vertices, faces, pieces)
 
 

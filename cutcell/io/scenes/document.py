@@ -51,7 +51,7 @@ def scene_document(
         raise FileError(f'node "{name}" has a place, turn or scale that is not a finite number')
     made = _SceneBuilder(generator)
     made.add_nodes(scene)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is told later
+    with np.errstate(over="ignore", invalid="ignore"):  # checked later
         skins, world = scene_skins(scene)
     for k in range(len(scene["mesh_names"])):
         made.add_scene_mesh(scene, k, skins.get(k))
@@ -96,7 +96,7 @@ class _SceneBuilder(GltfBuilder):
                 self.json["nodes"][parent].setdefault("children", []).append(i)
 
     def add_scene_mesh(self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin | None) -> None:
-        """Hang a mesh on a node of its own below its node: that one may have geometry already."""
+        """Add a mesh on a new node below its node, which may have geometry already."""
         name = str(scene["mesh_names"][k])
         vertices, faces = scene[f"mesh_{k}_vertices"], scene[f"mesh_{k}_faces"]
         if not len(faces):

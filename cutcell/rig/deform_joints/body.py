@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...geometry.triangles import normals
@@ -16,7 +18,9 @@ CELL = SPACING / 2
 MAX_SPLITS = 50
 """Along each side of a triangle, whatever its size."""
 INSIDE = 0.3
-"""Threshold of the winding number, of either sign: open meshes are never whole, some inside out."""
+"""Threshold of the winding number: open meshes are never whole."""
+WELD = 1 << 20
+"""Steps of a grid along the longest side: vertices in one cell are the same."""
 BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
 
@@ -27,11 +31,11 @@ class Body:
     def __init__(self, mesh: TriangleMesh) -> None:
         low, high = mesh.bounds
         self.size = float((high - low).max())
-        corners = (mesh.vertices[mesh.faces] - low) / self.size
+        corners = _outward((mesh.vertices - low) / self.size, mesh.faces)
         self._low = low
         self._corners = corners
-        self._points, self._areas = _merged(*_samples(corners))
-        self._tree = cKDTree(self._points)
+        self.points, self._areas = _merged(*_samples(corners))
+        self._tree = cKDTree(self.points)
 
     def to_unit(self, points: NDArray) -> NDArray[np.float64]:
         """Scale points so that the longest side of the body is one."""
@@ -44,13 +48,13 @@ class Body:
     def inside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return which points (p, 3) the surface encloses; `SPACING` from it at least."""
         winding = np.zeros(len(points))
-        step = max(1, BLOCK // len(self._points))
+        step = max(1, BLOCK // len(self.points))
         for first in range(0, len(points), step):
-            away = self._points - points[first : first + step, None]
+            away = self.points - points[first : first + step, None]
             cubed = np.einsum("psi,psi->ps", away, away) ** 1.5
             covered = np.einsum("psi,si->ps", away, self._areas) / cubed
             winding[first : first + step] = covered.sum(axis=1)
-        return np.abs(winding) > INSIDE * 4 * np.pi
+        return winding > INSIDE * 4 * np.pi
 
     def away(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Measure from points (p, 3) to the body, 0 inside of it."""
@@ -66,7 +70,23 @@ class Body:
         volume = np.einsum("mi,mi->m", a, np.cross(b, c))
         dots = [np.einsum("mi,mi->m", x, y) for x, y in ((a, b), (b, c), (c, a))]
         below = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
-        return bool(abs(np.arctan2(volume, below).sum()) > INSIDE * 2 * np.pi)
+        return bool(np.arctan2(volume, below).sum() > INSIDE * 2 * np.pi)
+
+
+def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
+    """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out."""
+    grid = np.rint(vertices * WELD).astype(np.int64) @ [1 << 42, 1 << 21, 1]
+    welded = np.unique(grid, return_inverse=True)[1][faces]
+    ends = welded[:, :2].ravel(), welded[:, 1:].ravel()
+    links = coo_matrix((np.ones(len(ends[0]), bool), ends), (len(vertices), len(vertices)))
+    part = connected_components(links, directed=False)[1][welded[:, 0]]
+    corners = vertices[faces]
+    sums = np.stack([np.bincount(part, x) for x in corners.mean(axis=1).T], axis=1)
+    middles = sums / np.maximum(np.bincount(part), 1)[:, None]
+    away = corners - middles[part, None]
+    volume = np.einsum("mi,mi->m", away[:, 0], np.cross(away[:, 1], away[:, 2]))
+    inside_out = np.bincount(part, volume)[part] < 0
+    return np.where(inside_out[:, None, None], corners[:, ::-1], corners)
 
 
 def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -76,10 +96,10 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     area = normals(corners) / 2
     points, areas = [], []
     for n in np.unique(splits):
-        mine = splits == n
+        is_split = splits == n
         weights = _middles(int(n))
-        points.append(np.einsum("sc,mci->msi", weights, corners[mine]).reshape(-1, 3))
-        areas.append(np.repeat(area[mine] / n**2, len(weights), axis=0))
+        points.append(np.einsum("sc,mci->msi", weights, corners[is_split]).reshape(-1, 3))
+        areas.append(np.repeat(area[is_split] / n**2, len(weights), axis=0))
     return np.concatenate(points), np.concatenate(areas)
 
 

@@ -1,37 +1,24 @@
-"""Which joints may carry weight: by their names, their place in the body, or a choice."""
+"""Which joints may carry weight, by their names and their place in the body."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from difflib import get_close_matches
-from fnmatch import fnmatchcase
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...errors import ParameterError
 from ..mesh import TriangleMesh
-from ..names import (
-    folded,
-    is_control,
-    is_end_marker,
-    is_fingertip,
-    is_mmd_control,
-    is_mmd_tip,
-    is_of_mmd,
-    is_root,
-    is_socket,
-    may_be_control,
-    words,
-)
-from ..rig import FAR_OUTSIDE, Rig
+from ..rig import FAR_OUTSIDE
 from ..skeleton import Skeleton
 from .body import SPACING, Body
+from .conventions import kinds_by_name
+from .joints import BONE, EXACT, Joints
 
 OUTSIDE = 0.04
 """Distance from the body beyond which a joint moves none of it, in longest sides."""
+LONG = 1.5
+"""Lengths of the longest bone: the bone of a joint outside that is longer leads from a root."""
 FEW_BONES = 0.15
 """Distance from the body at which a root may lie whose children are all other joints."""
 SAME_PLACE = 0.01
@@ -40,15 +27,15 @@ THROUGH_BODY = 0.5
 """Part of a link between two joints that must run in or near the body for it to be a bone."""
 ALONG = np.linspace(0.1, 0.9, 9)
 """Samples along a link."""
-NOTHING_BEYOND = 0.15
-"""Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
+NOTHING_BEYOND = 0.05
+"""Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
 
 MAX_JOINTS = 2_000
 """Joints beyond which only names count, since places would take minutes."""
 
-BONE = "in or near the body"
+OFF_BODY = "outside of the body"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,18 +47,22 @@ class DeformJoints:
     deform : array, shape (j,), bool
     reason : tuple of str
         For each joint, a phrase.
+    doubtful : array, shape (j,), bool
+        Joints that may carry weight, but could as well be controls or mark an end.
     """
 
     deform: NDArray[np.bool_]
     reason: tuple[str, ...]
+    doubtful: NDArray[np.bool_]
 
 
 def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = None) -> DeformJoints:
     """Classify joints as bones, controls, end markers, sockets or roots, without weights.
 
     Names decide where riggers and exporters have words for it; else where a joint lies: what is
-    outside of the body moves nothing, and neither does a joint with no skin beyond it at the end
-    of a bone. In garments and props, where most joints are away from the mesh, only names count.
+    outside of the body moves nothing, and neither does a joint at the place of another that moves
+    it. In garments and props, where most joints are away from the mesh, only names count. Where
+    neither decides, a joint may carry weight and is doubtful.
 
     Parameters
     ----------
@@ -92,96 +83,159 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = No
         The skeleton has no joints.
     """
     skeleton.require_joints()
-    guess = _Guess(mesh, skeleton, body or Body(mesh))
+    guess = _Guess(skeleton, body or Body(mesh))
     guess.by_name()
-    if guess.is_body:
+    if len(skeleton.joints) <= MAX_JOINTS and guess.is_in_body():
         guess.by_place()
     if not guess.deform.any():  # a rig of nothing but controls: then they are what moves it
-        return DeformJoints(np.ones(len(skeleton.joints), bool), (BONE,) * len(skeleton.joints))
-    return DeformJoints(guess.deform, tuple(guess.reason))
+        every = np.ones(len(skeleton.joints), bool)
+        return DeformJoints(every, (BONE,) * len(every), every)
+    return DeformJoints(guess.deform, tuple(guess.reason), guess.doubtful & guess.deform)
 
 
-class _Guess:
-    def __init__(self, mesh: TriangleMesh, skeleton: Skeleton, body: Body) -> None:
-        self.names, self.parents = skeleton.names, skeleton.parents
-        self.children = skeleton.children
-        self.leaves_first = np.argsort(-skeleton.depth, kind="stable").tolist()
+class _Guess(Joints):
+    def __init__(self, skeleton: Skeleton, body: Body) -> None:
+        super().__init__(skeleton, body.to_unit(skeleton.joints))
         self.body = body
-        self.joints = self.body.to_unit(skeleton.joints)
-        self.vertices = self.body.to_unit(mesh.vertices[np.unique(mesh.faces)])
+        self.kinds = kinds_by_name(self.names)
         self.distance = np.zeros(len(self.joints))
-        self.is_body = False
         if len(self.joints) <= MAX_JOINTS:
-            self.distance = self.body.away(self.joints)
-            self.is_body = bool((self.distance <= OUTSIDE).mean() >= ENOUGH_NEAR)
-        self.deform = np.ones(len(self.joints), bool)
-        self.reason = [BONE] * len(self.joints)
+            self.distance = body.away(self.joints)
+
+    def is_in_body(self) -> bool:
+        """Return whether the mesh is a body, not a garment: most bones are near it."""
+        near = self.distance[self.deform] <= OUTSIDE
+        return bool(near.sum() > ENOUGH_NEAR * len(near))
 
     def by_name(self) -> None:
         """Rule out what is called an end marker, a socket, or a control of another joint."""
-        marked = [words(name)[:1] == ["def"] for name in self.names]  # Rigify's `DEF-spine`
-        of_mmd = any(map(is_of_mmd, self.names))
         for j in self.leaves_first:
-            if any(marked) and not marked[j]:
-                self._rule_out(j, "others are marked DEF")
-                continue
-            name = self.names[j]
-            is_marker = is_end_marker(name) or is_fingertip(name) or (of_mmd and is_mmd_tip(name))
-            if is_marker and not len(self._bones_below(j)):
-                self._rule_out(j, "end marker, by its name")
-            elif is_socket(name):
-                self._rule_out(j, "holds things, by its name")
-            elif is_control(name) or (of_mmd and is_mmd_control(name)):
-                self._rule_out(j, "control, by its name")
-        self._by_name_and_place(np.array([may_be_control(name) for name in self.names]))
+            kind, reason = self.kinds[j]
+            is_end = kind == "ends" and not len(self.bones_below(j))
+            if is_end or kind in ("controls", "sockets", "roots"):
+                self.rule_out(j, reason)
+        for j in reversed(self.leaves_first):  # joints below marked bones deform, too
+            kind, reason = self.kinds[j]
+            parent = self.parents[j]
+            if kind == "others" and (parent < 0 or not self.deform[parent]):
+                self.rule_out(j, reason)
+        self._by_name_and_place(np.array([kind == "unsure" for kind, _ in self.kinds]))
 
     def _by_name_and_place(self, unsure: NDArray[np.bool_]) -> None:
         """Rule out what may be a control and stands where another joint does, or in the air."""
-        others = np.flatnonzero(self.deform & ~unsure)
-        tree = cKDTree(self.joints[others]) if len(others) else None
+        sure = np.flatnonzero(self.deform & ~unsure)
         for j in reversed(self.leaves_first):
             if not (self.deform[j] and unsure[j]):
                 continue
-            away, k = tree.query(self.joints[j]) if tree else (np.inf, 0)
+            self.doubt(j, "control or bone, by its name")
             parent = self.parents[j]
-            if away <= SAME_PLACE:
-                at = self.names[others[k]]
-                self._rule_out(j, f'control at the place of "{at}"')
+            away = np.linalg.norm(self.joints[sure] - self.joints[j], axis=1)
+            away[np.isin(sure, self.chain(j))] = np.inf
+            k = sure[away.argmin()] if len(sure) else j
+            if away.min(initial=np.inf) <= SAME_PLACE:
+                self.rule_out(j, f'control at the place of "{self.names[k]}"')
             elif self.distance[j] > SPACING:
-                self._rule_out(j, "control outside of the body")
+                self.rule_out(j, "control outside of the body")
             elif parent >= 0 and "control" in self.reason[parent]:
-                self._rule_out(j, "part of a control")
+                self.rule_out(j, "part of a control")
+            elif k != j and self.plain[j][1] == self.plain[k][1] and self.ends_limb(k):
+                self.rule_out(j, f'control of "{self.names[k]}"')
 
     def by_place(self) -> None:
-        """Rule out what is away from the body, but in its units, root joints and ends of bones."""
+        """Rule out what was never placed, is away from the body, or where another joint is."""
+        absent = np.zeros(len(self.deform), bool)
         for j in self.leaves_first:
             if not self.deform[j]:
                 continue
-            below = self._bones_below(j)
-            if not len(below) and self._ends_a_bone(j):
-                self._rule_out(j, "end marker: no skin beyond it")
-            elif OUTSIDE < self.distance[j] < FAR_OUTSIDE and not self._leads_into_body(j, below):
-                self._rule_out(j, "outside of the body")
-            elif self.parents[j] < 0 and self._stands_beside(j, below):
-                self._rule_out(j, "root beside the body")
+            below = self.bones_below(j)
+            if OUTSIDE < self.distance[j] < FAR_OUTSIDE and not len(below):
+                self.rule_out(j, OFF_BODY)
+            elif self.distance[j] <= OUTSIDE and not len(below) and self._ends_a_bone(j):
+                self.rule_out(j, "end marker: no skin beyond it")
+            elif len(self.children[j]):
+                absent[j] = all(absent[k] or self.reason[k] == OFF_BODY for k in self.children[j])
+        for j in np.flatnonzero(absent).tolist():
+            self.doubt(j, "in a limb outside of the body")
+        for j in reversed(self.leaves_first):
+            if self.deform[j]:
+                below = self.bones_below(j)
+                (self._top if len(below) and self.is_top(j) else self._inner)(j, below)
+        self._doubled()
 
-    def _rule_out(self, joint: int, reason: str) -> None:
-        self.deform[joint], self.reason[joint] = False, reason
-
-    def _bones_below(self, joint: int) -> NDArray[np.intp]:
-        children = self.children[joint]
-        return children[self.deform[children]]
-
-    def _stands_beside(self, joint: int, below: NDArray[np.intp]) -> bool:
-        """Return whether a root lies outside, and moves others rather than skin."""
-        chained = any(len(self._bones_below(k)) for k in below)
+    def _top(self, joint: int, below: NDArray[np.intp]) -> None:
+        """Rule out a joint without bones above it that moves others rather than skin."""
+        chained = any(len(self.bones_below(k)) for k in below)
         is_all = self.deform.sum() == 1 + len(below)
         if is_all and not chained and self.distance[joint] <= FEW_BONES:
-            return False  # it moves what the few parts that hang on it do not
+            return  # it moves the skin that its few children do not
+        is_named = self.kinds[joint][0] == "root"
+        ways = self.joints[below] - self.joints[joint]
+        if len(below) <= 2 and all(self.together(joint, k) for k in below):
+            # Another bone is harmless there, while the wrong one of two turns too much.
+            decide = self.rule_out if is_named else self.doubt
+            decide(joint, f'root at the place of "{self.names[below[0]]}"')
+        elif self._is_outside(joint):
+            leads = self._leads_into_body(joint, below) and not self._is_longest(joint, below)
+            if is_named or not leads:
+                decide = self.rule_out if is_named or len(below) < 3 else self.doubt
+                decide(joint, "root beside the body")
+        elif is_named:
+            is_start = len(below) == 1 or (len(below) == 2 and ways[0] @ ways[1] > 0)
+            decide = self.rule_out if is_start else self.doubt
+            decide(joint, "root, by its name")
+
+    def _inner(self, joint: int, below: NDArray[np.intp]) -> None:
+        """Rule out a joint that was never placed; note one at its child, or outside of the body."""
+        if self.distance[joint] > OUTSIDE:
+            self.doubt(joint, OFF_BODY)
+        elif len(below) == 1 and self.together(joint, below[0]):
+            self.doubt(joint, f'at the place of "{self.names[below[0]]}"')
+        above = parent = self.parents[joint]
+        is_placed = parent < 0 or self.together(joint, parent)
+        while above >= 0:
+            is_root = not len(below) and self.parents[above] < 0
+            moves_none = not self.deform[above] and self.distance[above] > 0
+            if moves_none and (is_root or not is_placed) and self.together(joint, above):
+                self.rule_out(joint, f'not placed: at "{self.names[above]}"')
+            above = self.parents[above]
+
+    def _is_longest(self, joint: int, below: NDArray[np.intp]) -> bool:
+        """Return whether the only bone of a joint is far longer than all others."""
+        bones = np.flatnonzero(self.deform & (self.parents >= 0) & (self.parents != joint))
+        away = self.joints[bones] - self.joints[self.parents[bones]]
+        lengths = np.linalg.norm(away, axis=1)[self.deform[self.parents[bones]]]
+        length = np.linalg.norm(self.joints[below[0]] - self.joints[joint])
+        return len(below) == 1 and bool(length > LONG * lengths.max(initial=0))
+
+    def _is_outside(self, joint: int) -> bool:
         if 0 < self.distance[joint] <= SPACING and self.body.encloses(self.joints[joint]):
             return False
-        outside = self.distance[joint] > 0 and len(below) > 0
-        return outside and (is_root(self.names[joint]) or not self._leads_into_body(joint, below))
+        return bool(self.distance[joint] > 0)
+
+    def _doubled(self) -> None:
+        """Rule out the shorter of two chains on the same places."""
+        bones = np.flatnonzero(self.deform)
+        pairs = bones[cKDTree(self.joints[bones]).query_pairs(EXACT, output_type="ndarray")]
+        place = np.arange(len(self.joints))
+        for a, b in pairs:
+            place[max(a, b)] = min(place[a], place[b])
+        for a, b in pairs:
+            is_alike = self.stem(a) == self.stem(b)
+            partners = is_alike and self.plain[a][1] != self.plain[b][1]
+            related = partners or self.parents[a] == self.parents[b]
+            if related or self.is_below(a, b) or self.is_below(b, a):
+                continue
+            if not (self.deform[a] and self.deform[b]):
+                continue
+            chains = {j: self.chain(j) for j in (a, b)}
+            places = {j: set(place[chain].tolist()) for j, chain in chains.items()}
+            ranks = [(len(places[j]), not self.is_top(j), -len(chains[j])) for j in (a, b)]
+            less, more = (a, b) if ranks[0] < ranks[1] else (b, a)
+            if ranks[0] == ranks[1] or (self.ends_limb(less) and not is_alike):
+                self.doubt(a, f'at the place of "{self.names[b]}"')
+                self.doubt(b, f'at the place of "{self.names[a]}"')
+            elif places[less] <= places[more]:
+                self.rule_out(less, f'at the place of "{self.names[more]}"')
 
     def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
         """Return whether a link to any of the others runs through the body."""
@@ -192,71 +246,13 @@ class _Guess:
         return bool((near.reshape(-1, len(ALONG)).mean(axis=1) >= THROUGH_BODY).any())
 
     def _ends_a_bone(self, joint: int) -> bool:
-        """Return whether a last joint lies at the end of a chain of bones, with no skin beyond."""
-        parents, joints = self.parents, self.joints
-        parent = parents[joint]
-        if parent < 0 or parents[parent] < 0 or len(self.children[parent]) > 1:
+        """Return whether a last joint lies on the skin at the end of a bone, or a little beyond."""
+        parent = self.parents[joint]
+        if parent < 0 or len(self.children[parent]) > 1:
             return False
-        bone = joints[joint] - joints[parent]
+        bone = self.joints[joint] - self.joints[parent]
         length = np.linalg.norm(bone)
-        if length == 0 or length > 3 * np.linalg.norm(joints[parent] - joints[parents[parent]]):
-            return False
-        away = self.vertices - joints[joint]
-        apart, beyond = np.linalg.norm(away, axis=1), (away @ bone) / length
-        around = (apart < length) & (beyond > -0.05 * length)
-        no_skin = beyond.max(initial=-1, where=around) < NOTHING_BEYOND * length
-        return bool(around.any() and no_skin and apart[around].max() < length / 2)
-
-
-def choose_deform(
-    rig: Rig, deform: Sequence[str] = (), no_deform: Sequence[str] = (), *, fresh: bool = False
-) -> Rig:
-    """Return the same rig with other joints that may carry weight.
-
-    Parameters
-    ----------
-    rig : Rig
-    deform, no_deform : sequences of str
-        Names of joints that shall, or shall not, carry weight. ``*`` and ``?`` stand for any
-        letters and for one; upper and lower case are the same, and so are full and half width.
-        A joint that both name carries none.
-    fresh : bool
-        Forget the file's weights first, and which joints they are of: `deform_joints` says.
-
-    Returns
-    -------
-    Rig
-
-    Raises
-    ------
-    ParameterError
-        A name that no joint has, or no joint left that may carry weight.
-
-    Examples
-    --------
-    >>> rig = cutcell.choose_deform(rig, no_deform=["*_IK", "Root"])  # doctest: +SKIP
-    """
-    skeleton = rig.skeleton
-    chosen = skeleton.deform.copy()
-    if fresh and len(chosen):
-        rig = rig.with_weights(None)
-        chosen = deform_joints(rig.mesh, skeleton).deform.copy()
-    for patterns, value in ((deform, True), (no_deform, False)):
-        for pattern in patterns:
-            chosen[_named(skeleton, pattern)] = value
-    if len(chosen) and not chosen.any():
-        raise ParameterError("no joint is left that may carry weight; choose fewer to leave out")
-    return replace(rig, skeleton=replace(skeleton, deform=chosen))
-
-
-def _named(skeleton: Skeleton, pattern: str) -> list[int]:
-    wanted, names = folded(pattern), [folded(name) for name in skeleton.names]
-    found = [j for j, name in enumerate(names) if name == wanted]
-    # A name may hold what stands for other letters; then it means itself.
-    found = found or [j for j, name in enumerate(names) if fnmatchcase(name, wanted)]
-    if not found:
-        near = get_close_matches(wanted, names, 3, 0.4)
-        close = [skeleton.names[names.index(name)] for name in near]
-        hint = f"; did you mean {' or '.join(close)}?" if close else ""
-        raise ParameterError(f'no joint is called "{pattern}"{hint}')
-    return found
+        away = self.body.points - self.joints[joint]
+        beyond = (away @ bone)[np.linalg.norm(away, axis=1) < length]
+        is_last = len(beyond) > 0 and beyond.max() <= NOTHING_BEYOND * length**2
+        return bool(is_last and not self.body.encloses(self.joints[joint]))

@@ -11,16 +11,14 @@ from ...rig import Skeleton
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
 
-PENALTY = 2.0
-"""Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
-outside of while it is inside another one."""
 PART_OF_BODY = 0.1
 """Maximum area of a component of one joint, such as an eyeball, as part of the largest component's.
 The head of a machine of many parts is larger."""
 BODY = 1 / 3
 """Part of the surface: if the largest component is smaller, the mesh is a machine of many parts."""
-BARRED = 1e6
-"""Factor of a bone's distance on components that its joint does not follow at all."""
+OF_ANOTHER = 1e3
+"""Factor of a bone's distance on components that another joint owns, and on all that its joint does
+not own if it owns any."""
 RIGID = 0.9, 0.92
 """A component is rigid if one joint is the strongest on the second part of its area; less and less
 rigid down to the first."""
@@ -94,18 +92,17 @@ def cross_component_penalty(
     """Return the factor by which each joint's distance grows on each component.
 
     An arm whose mesh is a separate component reaches into the shoulder, and its bone with it;
-    the surface of the chest there is not the arm's. No factor is on the component that contains
-    most of a joint's bone, nor on one that contains more of this bone than of any other. A joint
-    that owns components keeps to them.
+    the surface of the chest there is not the arm's. The factor is 1 on the component that contains
+    most of a joint's bone, and up to 2 on others; it is 1 on components without bones. A joint
+    that owns components keeps to them, and they to it.
 
     Shapes: containment, owned (components, j); returns (components, j).
     """
-    of_joint, of_component = containment.max(axis=0), containment.max(axis=1, keepdims=True)
-    belongs = containment / np.maximum(np.minimum(of_joint, of_component), 1e-300)
-    belongs[:, of_joint == 0] = 1
-    penalty = 1 + PENALTY * (1 - np.minimum(belongs, 1))
-    penalty[of_component[:, 0] == 0] = 1
-    penalty[~owned & owned.any(axis=0)] = BARRED
+    of_joint = containment.max(axis=0)
+    belongs = np.divide(containment, of_joint, out=np.ones_like(containment), where=of_joint > 0)
+    penalty = 2 - belongs
+    penalty[~containment.any(axis=1)] = 1
+    penalty[~owned & (owned.any(axis=1, keepdims=True) | owned.any(axis=0))] = OF_ANOTHER
     return penalty
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import splu
 
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
@@ -54,6 +54,44 @@ class Level(NamedTuple):
     group: NDArray[np.int32]
 
 
+Columns: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+"""Start of each column, then the rows, ascending, and values of all columns."""
+
+
+class Factors(NamedTuple):
+    """Triangular factors L and U of a matrix A, shape (k, k), with its rows and columns permuted.
+
+    Parameters
+    ----------
+    lower, upper : Columns
+        L, with ones on the diagonal, and U.
+    row, column : arrays, shape (k,), int32
+        Where each row and each column of A is in L U.
+    """
+
+    lower: Columns
+    upper: Columns
+    row: NDArray[np.int32]
+    column: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, matrix: csr_array) -> Factors:
+        """Factorise a symmetric positive definite matrix."""
+        # For many unknowns SuperLU takes minutes to find the minimum degree.
+        order = "MMD_AT_PLUS_A" if matrix.shape[0] <= MANY else "COLAMD"
+        options = {"SymmetricMode": True}
+        lu = splu(matrix.tocsc(), order, diag_pivot_thresh=0.0, options=options)
+        # The arrays are copies: SuperLU frees its memory only in the thread that allocated it
+        # (https://github.com/scipy/scipy/issues/15921).
+        return cls(_columns(lu.L), _columns(lu.U), lu.perm_r.copy(), lu.perm_c.copy())
+
+
+def _columns(matrix: csc_array) -> Columns:
+    """Return the columns of a matrix, shape (k, k), with ascending rows."""
+    matrix.sort_indices()
+    return matrix.indptr, matrix.indices, matrix.data
+
+
 @dataclass(frozen=True, eq=False)
 class Diffusion:
     """The screened Poisson equation of bone heat.
@@ -73,8 +111,8 @@ class Diffusion:
         The diagonal of M H.
     levels : tuple of Level
         The finest first; empty for up to `MANY` welded vertices.
-    factors : SuperLU
-        Factors of the coarsest matrix.
+    factors : Factors
+        Of the coarsest matrix.
 
     References
     ----------
@@ -85,7 +123,7 @@ class Diffusion:
 
     screening: NDArray[np.float64]
     levels: tuple[Level, ...]
-    factors: SuperLU
+    factors: Factors
 
     @classmethod
     def over(
@@ -112,11 +150,7 @@ class Diffusion:
             size, coarse = np.bincount(group), np.bincount(group, coarse)
             points = [np.bincount(group, axis) / size for axis in surface.points.T]
             surface = SurfaceOperators.over(np.stack(points, axis=1), group[surface.faces])
-        # For many unknowns SuperLU takes minutes to find the minimum degree.
-        order = "MMD_AT_PLUS_A" if matrix.shape[0] <= MANY else "COLAMD"
-        options = {"SymmetricMode": True}
-        factors = splu(matrix.tocsc(), order, diag_pivot_thresh=0.0, options=options)
-        return cls(screening, tuple(levels), factors)
+        return cls(screening, tuple(levels), Factors.of(matrix))
 
     def spread(
         self, weights: NDArray[np.float64], report: Tell = lambda done: None
@@ -159,7 +193,8 @@ class Diffusion:
         """Write the equilibrium of the weights of some joints into their columns."""
 
         def solve(group: NDArray[np.intp]) -> None:
-            solution = self._solve(self.screening[:, None] * weights[:, group])
+            right = self.screening[:, None] * weights[:, group]
+            solution = self._solve(np.ascontiguousarray(right))
             spread[:, group] = np.maximum(solution, 0.0, out=solution)
 
         groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]
@@ -168,13 +203,34 @@ class Diffusion:
     def _solve(self, right: NDArray[np.float64], level: int = 0) -> NDArray[np.float64]:
         """Solve for right sides (k, s) on one level."""
         if level == len(self.levels):
-            return self.factors.solve(right)
+            return _substitute(*self.factors, right)
         matrix, group = self.levels[level]
         sums = csr_array((np.ones(len(group)), group, np.arange(len(group) + 1, dtype=np.int32)))
         x = self._solve(sums.T @ right, level + 1)[group]
         for _ in range(SMOOTHING_STEPS):
             _smooth(matrix.indptr, matrix.indices, matrix.data, right, x)
         return x
+
+
+@compiled
+def _substitute(lower, upper, row, column, right):
+    """Solve by triangular factors for right sides (k, s)."""
+    start, index, value = lower
+    x = np.empty_like(right)
+    for v in range(len(x)):
+        x[row[v]] = right[v]
+    for v in range(len(x)):
+        for e in range(start[v] + 1, start[v + 1]):
+            for i in range(x.shape[1]):
+                x[index[e], i] -= value[e] * x[v, i]
+    start, index, value = upper
+    for v in range(len(x) - 1, -1, -1):
+        for i in range(x.shape[1]):
+            x[v, i] /= value[start[v + 1] - 1]
+        for e in range(start[v], start[v + 1] - 1):
+            for i in range(x.shape[1]):
+                x[index[e], i] -= value[e] * x[v, i]
+    return x[column]
 
 
 @compiled

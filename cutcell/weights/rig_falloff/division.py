@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
-from ...geodesics.fallback import straight_to_nearest
 from ...geometry.vectors import segment_fraction
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
-from .containment import BARRED, cross_component_penalty, joint_containment
+from .containment import cross_component_penalty, joint_containment
 from .surface_operators import SurfaceOperators
 
 POWER = 30
@@ -33,8 +32,6 @@ CONNECTED = 0.02
 on to it."""
 MANY = 200_000
 """Vertices whose distances are sorted to measure radii; of more, these are a sample."""
-NEAREST = 3
-"""Bones that a vertex has straight distances to where all measured joints are barred from it."""
 MIN_SHARE = 1e-3
 """Smallest share of a joint at a vertex of that joint's surface."""
 
@@ -82,7 +79,6 @@ class Division:
         joints, vertices = distances.at_welded.shape
         containment, owned = joint_containment(surface, distances.bones, distances.skeleton, joints)
         penalty = cross_component_penalty(containment, owned)
-        distances = _without_barred(distances, surface, penalty >= BARRED)
         distance = distances.at_welded
         if adjustments is not None:
             penalty = penalty / adjustments.gain
@@ -169,26 +165,6 @@ def _divide_by_distance(
                 total += weights[v, j]
         for j in range(len(distance)):
             weights[v, j] /= total
-
-
-def _without_barred(
-    distances: BoneDistances, surface: SurfaceOperators, barred: NDArray[np.bool_]
-) -> BoneDistances:
-    """Give vertices straight distances to other joints where all measured joints are barred.
-
-    Shapes: barred (components, j).
-    """
-    distance, bones = distances.at_welded, distances.bones
-    if not barred.any():
-        return distances
-    usable = np.isfinite(distance) & ~barred[surface.component].T
-    lost = np.flatnonzero(~usable.any(axis=0))
-    is_barred = np.asarray(barred.any(axis=0))
-    free = bones.subset(~is_barred[bones.joint])
-    straight = straight_to_nearest(surface.points[lost], free, NEAREST)
-    distance = distance.copy()
-    np.minimum.at(distance, (free.joint[:, None], lost), straight)
-    return replace(distances, at_welded=distance)
 
 
 @no_refcount

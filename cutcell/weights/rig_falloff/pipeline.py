@@ -11,6 +11,7 @@ from ..context import Context, Step
 from .containment import make_rigid
 from .diffusion import Diffusion
 from .division import Division
+from .garments import drape
 from .rigid_accessories import attach_accessories
 
 TAIL = 0.05
@@ -37,13 +38,13 @@ def spread(context: Context) -> NDArray[np.float64]:
 
 
 def with_rigid_parts(context: Context) -> NDArray[np.float64]:
-    """Make plates, wheels, eyes and buttons rigid."""
+    """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
     containment, surface = context.division.containment, context.operators()
     weights, independent = context.weights, np.zeros(len(containment), np.bool_)
     if context.adjustments is not None:
         independent[surface.component[context.adjustments.independent]] = True
     if len(containment) > 1:
-        weights = make_rigid(surface, weights, independent)
+        weights = make_rigid(surface, drape(context, weights, independent), independent)
     return attach_accessories(context.graph, surface, containment, weights, independent)
 
 

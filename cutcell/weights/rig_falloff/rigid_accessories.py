@@ -61,7 +61,7 @@ def attach(
     points, component, areas = surface.points, surface.component, surface.areas
     on_body = ~is_accessory[component]
     attached = np.flatnonzero(~on_body)
-    distance, corners = _nearest_on_body(graph, on_body, points[attached])
+    distance, corners = nearest_on_body(graph, on_body, points[attached])
     label = component[attached]
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
@@ -95,7 +95,7 @@ def _contact_weights(
     return mean + alone * (joints[share.argmax(axis=1)] - mean)
 
 
-def _nearest_on_body(
+def nearest_on_body(
     graph: CutCellGraph, on_body: NDArray[np.bool_], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Measure from points to the body's surface: its vertices, and where rays hit it.

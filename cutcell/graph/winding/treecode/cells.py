@@ -12,8 +12,8 @@ ambiguous: cells near the rims of holes, and near the surfaces w_caps = k - tau.
 point queries, see `queries.py`. Clusters far from a block are far from its halves, too, and their
 expansion is translated from block to half; only near clusters are visited again.
 
-Of a soup whose triangles are all apart, the caps are the triangles turned round: chi is 0
-everywhere, and the clusters decide all.
+If no two triangles of a soup touch, the caps are the inverted triangles: chi is 0 everywhere, and
+the clusters decide all.
 """
 
 from __future__ import annotations

@@ -105,7 +105,9 @@ class TreecodeWindingNumbers:
         left = query[np.isnan(w[query])]
         if len(left):
             ahead = crossings[start[ray[left] + 1]] - crossings[gap[left]]
-            w[left] = ahead + self._boundary_angles(axis, segments.midpoints(left))
+            # Between the hits of repeated faces many midpoints are at one place.
+            points, index = np.unique(segments.midpoints(left), axis=0, return_inverse=True)
+            w[left] = ahead + self._boundary_angles(axis, points)[index]
         return w
 
     def _boundary_angles(self, axis: int, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,7 +29,7 @@ from .skins import Bind
 def bind_to_bones(document: Document, nodes: Nodes) -> tuple[Bind | None, str]:
     """Give skins to the meshes of a document, in the scene's space, or say why it has no bones.
 
-    Meshes that hang on a bone are accessories, unless all do.
+    Meshes below a bone are accessories, unless all are.
     """
     meshes = [
         i

@@ -110,8 +110,8 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
                 break
             top = below[0]  # a group in the place of what it holds
         tree = _below(top, children, ends)
-        held = [k for i in tree if i != top for k in children[i] if k in empty - ends]
-        tree += [k for i in held for k in _below(i, children, empty)]
+        groups = [k for i in tree if i != top for k in children[i] if k in empty - ends]
+        tree += [k for i in groups for k in _below(i, children, empty)]
         at = places[tree]
         if len(tree) < 2 or np.ptp(at, axis=0).max() <= SAME_PLACE * diagonal:
             continue
@@ -149,7 +149,7 @@ def _ends(
 
 
 def _below(top: int, children: dict[int, list[int]], chosen: set[int]) -> list[int]:
-    """Return a node and those of some that hang on it through others of these."""
+    """Return a node and all chosen nodes below it that chosen nodes connect to it."""
     reached = [top]
     for i in reached:  # grows
         reached += [k for k in children[i] if k in chosen]

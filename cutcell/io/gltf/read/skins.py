@@ -171,9 +171,9 @@ def read_bind(
         if is_first:
             to_rig = np.eye(4)
         elif shared:
-            here = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
+            inverse = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
             shares = one.shares[shared]
-            relations = np.linalg.inv(here) @ one.inverse[shared]
+            relations = np.linalg.inv(inverse) @ one.inverse[shared]
             shares = shares if shares.any() else np.ones(len(shared))
             to_rig = agreed(relations, shares, one.corners)
         else:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....rig import Rig
-from ...weights import neutral_joints, normalised
+from ....rig.rig import normalised
+from ...weights import neutral_joints
 from ..buffer import BufferWriter
 from ..influences import pack_influences, sorted_influences
 from ..read.accessors import find_accessor

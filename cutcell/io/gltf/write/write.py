@@ -1,6 +1,6 @@
 """Writing new weights into a glTF document, joints that were moved, and faces that were mended.
 
-The document's JSON is edited, not made anew: whatever it holds besides these
+The document's JSON is edited: everything else in it
 stays, and so does the number of every object in it, because extensions and extras may
 refer to them.
 """

@@ -1,0 +1,123 @@
+"""Application of layers to weights: pure functions on arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...weights.prune import prune
+from .layer import Layer
+from .sources import RigSources, Which, vertices_of
+
+ROWS = 1000
+"""Rows that are changed at a time: some arrays of them fit a processor's cache."""
+
+
+def apply_layers(
+    weights: NDArray[np.float64],
+    layers: Iterable[Layer],
+    sources: RigSources,
+    after: Callable[[Layer, NDArray[np.float64]], None] = lambda layer, weights: None,
+) -> NDArray[np.float64]:
+    """Return weights with layers over them, from bottom to top.
+
+    Only rows that a layer has a strength above 0 for are changed: all others stay the same, bit
+    for bit. Where a layer is opaque, the rows are those of its content, bit for bit. `after` is
+    called with each layer that was applied, and the weights up to it.
+
+    Shapes: weights (n, j), which stay as they are; returns (n, j).
+    """
+    result, is_own = weights, False
+    for layer in layers:
+        if not layer.is_active:
+            continue
+        which, strength = _masked(layer, sources.component, len(result))
+        if layer.content.by_rows and not is_own:
+            result, is_own = result.copy(), True
+        for part in _blocks(which, result) if layer.content.by_rows else [which]:
+            some, rows = sources.rows(layer, result, part)
+            if some is None and np.all(strength == 1) and not isinstance(rows, csr_array):
+                result, is_own = rows, False
+            elif some is None or len(some):
+                if not is_own:
+                    result, is_own = result.copy(), True
+                some = np.arange(len(result)) if some is None else some
+                _put(result, some, rows, strength, sources)
+        after(layer, result)
+    return result
+
+
+def _masked(
+    layer: Layer, component: Callable[[], NDArray[np.integer]], count: int
+) -> tuple[Which, NDArray[np.float64]]:
+    """Return the vertices of a layer's mask, and the layer's strength there.
+
+    Returns shapes (k,), or None for all vertices; strength () or (n,), the same everywhere or at
+    each vertex.
+    """
+    mask, opacity = layer.mask, np.float64(layer.opacity)
+    which = vertices_of(mask, component)
+    if mask.strengths is None:
+        return which, np.asarray(opacity)
+    strength = np.zeros(count)
+    strength[which] = opacity * mask.strengths
+    return which, strength
+
+
+def blended(
+    below: NDArray[np.float64],
+    content: NDArray[np.float64],
+    strength: NDArray[np.float64],
+    max_influences: int | None,
+    priority: NDArray[np.intp],
+) -> NDArray[np.float64]:
+    """Return rows between those below and those of a content.
+
+    Shapes: below, content (k, j), strength (k,), 0 to 1; priority (j,), the order of joints with
+    the same weight. Rows with strength 0 or 1 are those of one side, bit for bit; others have at
+    most `max_influences` weights and sum to one.
+    """
+    share = strength[:, None]
+    rows = (1 - share) * below + share * content
+    between = (strength > 0) & (strength < 1) & rows.any(axis=1)
+    rows[between] = prune(rows[between], max_influences, 0.0, priority)
+    rows[strength == 0] = below[strength == 0]
+    rows[strength == 1] = content[strength == 1]
+    return rows
+
+
+def _put(
+    weights: NDArray[np.float64],
+    which: NDArray[np.intp],
+    rows: Any,
+    strength: NDArray[np.float64],
+    sources: RigSources,
+) -> None:
+    """Blend rows, shape (k, j), into weights in place."""
+    if np.all(strength == 1):
+        if isinstance(rows, csr_array):
+            weights[which] = 0
+            weights[np.repeat(which, np.diff(rows.indptr)), rows.indices] = rows.data
+        else:
+            weights[which] = rows
+        return
+    done = 0
+    for part in _blocks(which, weights):
+        some = rows[done : done + len(part)]
+        done += len(part)
+        some = some.toarray() if isinstance(some, csr_array) else some
+        how = np.broadcast_to(strength, len(weights))[part]
+        weights[part] = blended(
+            weights[part], some, how, sources.method.max_influences, sources.priority
+        )
+
+
+def _blocks(which: Which, weights: NDArray[np.float64]) -> Iterator[NDArray[np.intp]]:
+    """Yield some vertices at a time, of all for None."""
+    for start in range(0, len(weights) if which is None else len(which), ROWS):
+        end = min(start + ROWS, len(weights))
+        yield np.arange(start, end) if which is None else which[start : start + ROWS]

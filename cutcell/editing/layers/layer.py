@@ -1,0 +1,180 @@
+"""Layers of weights: a content, and where and how strongly it replaces what lies below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...errors import ParameterError
+from ...rig.checks import check_flag, check_integer, check_number, frozen, shown
+from .contents import (
+    Attached,
+    Computed,
+    Content,
+    Filled,
+    FromFile,
+    Locked,
+    Mirrored,
+    Rename,
+    Smoothed,
+)
+from .packing import (
+    MAX_VERTEX,
+    ByValue,
+    ascending,
+    assign,
+    naming,
+    numbers,
+    packed,
+    unpacked,
+    with_keys,
+)
+from .painted import Painted
+
+KINDS: dict[str, Any] = {
+    one.kind: one
+    for one in (Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored, Locked)
+}
+"""Contents by the names of their kinds in JSON."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mask(ByValue):
+    """Vertices that a layer changes: all, a connected component, or some.
+
+    Parameters
+    ----------
+    part : int, optional
+        A connected component, by any vertex of it.
+    vertices : array, shape (k,), int32, optional
+        Ascending.
+    strengths : array, shape (k,), float64, optional
+        More than 0, at most 1, for each of the vertices; 1 when left out.
+    """
+
+    part: int | None = None
+    vertices: NDArray[np.int32] | None = None
+    strengths: NDArray[np.float64] | None = None
+
+    def __init__(
+        self,
+        part: int | None = None,
+        vertices: ArrayLike | None = None,
+        strengths: ArrayLike | None = None,
+    ) -> None:
+        which: Any = None
+        if part is not None:
+            part = check_integer("the vertex of a part", part, 0, MAX_VERTEX)
+        if vertices is not None:
+            which = ascending("vertices of a mask", vertices)
+        if (part is not None and which is not None) or (strengths is not None and which is None):
+            raise ParameterError("a mask has a part, or vertices, which may have strengths")
+        how: Any = None
+        if strengths is not None:
+            how = numbers("strengths", unpacked("strengths", strengths, "f"))
+            if len(how) != len(which) or not ((how > 0) & (how <= 1)).all():
+                raise ParameterError(
+                    f"strengths must be {len(which)} numbers, one for each vertex, above 0 and at "
+                    "most 1"
+                )
+            how = None if (how == 1).all() else frozen(how.copy())
+        assign(self, part=part, vertices=which, strengths=how)
+
+    @property
+    def is_all(self) -> bool:
+        """Whether it is all vertices."""
+        return self.part is None and self.vertices is None
+
+    def to_data(self) -> dict[str, Any]:
+        """Return it as JSON; empty for all vertices."""
+        if self.part is not None:
+            return {"part": self.part}
+        pairs = (("vertices", self.vertices), ("strengths", self.strengths))
+        return {name: packed(array) for name, array in pairs if array is not None}
+
+
+ALL = Mask()
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer over the weights below it.
+
+    Where it is opaque, the weights are those of its content. Elsewhere they are the mean of both,
+    with at most as many influences as the method has.
+
+    Parameters
+    ----------
+    content : Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored or Locked
+    mask : Mask
+    name : str
+    opacity : float
+        0 to 1.
+    on : bool
+    """
+
+    content: Content
+    mask: Mask = ALL
+    name: str = ""
+    opacity: float = 1.0
+    on: bool = True
+
+    def __post_init__(self) -> None:
+        for name, kind in (("content", Content), ("mask", Mask), ("name", str)):
+            value = getattr(self, name)
+            if not isinstance(value, kind):
+                raise ParameterError(f"{name} must be a {kind.__name__}, not {shown(value)}")
+        assign(self, opacity=check_number("opacity", self.opacity, 0, 1))
+        check_flag("on", self.on)
+
+    @property
+    def title(self) -> str:
+        """Its name, or else what it is."""
+        return self.name or self.content.title
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it can change anything."""
+        return self.on and self.opacity > 0
+
+    @property
+    def is_reach(self) -> bool:
+        """Whether it is all weights computed with another reach of joints: a base by itself."""
+        content, whole = self.content, self.mask.is_all and self.opacity == 1
+        return isinstance(content, Computed) and content.is_plain and whole
+
+    def renamed(self, now: Rename) -> Layer | None:
+        """Return it for joints that are called otherwise; None if its content is gone."""
+        content = self.content.renamed(now)
+        return None if content is None else replace(self, content=content)
+
+    def to_data(self) -> dict[str, Any]:
+        """Return it as JSON."""
+        data = {"kind": self.content.kind, **self.content.to_data()}
+        more = {"mask": self.mask.to_data(), "name": self.name}
+        data |= {key: value for key, value in more.items() if value}
+        data |= {} if self.opacity == 1 else {"opacity": self.opacity}
+        return data | ({} if self.on else {"on": False})
+
+    @classmethod
+    def from_data(cls, where: str, value: Any) -> Layer:
+        """Read what `to_data` returns."""
+        if not isinstance(value, Mapping) or value.get("kind") not in KINDS:
+            kinds = ", ".join(KINDS)
+            raise ParameterError(f'{where} must have a "kind": one of {kinds}')
+        kind = KINDS[value["kind"]]
+        own = [one.name for one in fields(kind)]
+        data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on"])
+        try:
+            with naming(where):
+                mask = with_keys("mask", data.pop("mask", {}), [one.name for one in fields(Mask)])
+                make = getattr(kind, "from_data", kind)
+                content = make(**{key: data.pop(key) for key in own if key in data})
+                data.pop("kind")
+                return cls(content, Mask(**mask), **data)
+        except TypeError:
+            raise ParameterError(f"{where} needs {' and '.join(own)}") from None

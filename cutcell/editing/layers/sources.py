@@ -1,0 +1,204 @@
+"""What contents of layers are made from: the file's weights, computed ones, operators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...errors import ParameterError, WeightsError
+from ...graph import CutCellGraph
+from ...method import Method
+from ...rig import Rig, TriangleMesh
+from ...weights.prune import prune
+from ...weights.rig_falloff.rigid_accessories import attach
+from ...weights.rig_falloff.surface_operators import SurfaceOperators
+from ..locks import joint_index, lock_joints
+from ..selections import Neighbours
+from ..symmetry import balanced, find_mirror, mirrored
+from .contents import Filled, Locked, Mirrored, Smoothed
+from .layer import Layer, Mask
+from .painted import Painted
+
+Which = NDArray[np.intp] | None
+"""Vertices, ascending; None for all."""
+Rows = tuple[Which, Any]
+NEAR = 1.5
+"""Lattice cells: shells that are closer are smoothed together, through the body."""
+SURFACES: WeakKeyDictionary[CutCellGraph, SurfaceOperators] = WeakKeyDictionary()
+NEIGHBOURS: WeakKeyDictionary[TriangleMesh, Neighbours] = WeakKeyDictionary()
+"""Operators that were computed: layers are applied again after each change of them."""
+
+
+def surface_of(graph: CutCellGraph) -> SurfaceOperators:
+    """Return a graph's `SurfaceOperators`, computed once."""
+    if graph not in SURFACES:
+        SURFACES[graph] = SurfaceOperators.of(graph)
+    return SURFACES[graph]
+
+
+def vertices_of(mask: Mask, component: Callable[[], NDArray[np.integer]]) -> Which:
+    """Return the vertices of a mask; None for all."""
+    if mask.part is not None:
+        label = component()
+        return np.flatnonzero(label == label[mask.part])
+    return None if mask.vertices is None else mask.vertices.astype(np.intp)
+
+
+@dataclass(eq=False)
+class RigSources:
+    """Sources of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    method : Method
+        Its greatest number of influences holds for layers, too.
+    graph : CutCellGraph or None
+        Needed by parts, attached ones, and smoothing through the body.
+    operators : callable
+        Returns the graph's `SurfaceOperators`.
+    computed : callable
+        Returns the weights, shape (n, j), of a layer with a `Computed` content.
+    """
+
+    rig: Rig
+    method: Method
+    graph: CutCellGraph | None = None
+    operators: Callable[[], SurfaceOperators] | None = None
+    computed: Callable[[Layer], NDArray[np.float64]] | None = None
+
+    @cached_property
+    def priority(self) -> NDArray[np.intp]:
+        """The order of joints with the same weight."""
+        return np.lexsort(self.rig.skeleton.joints.T)
+
+    def component(self) -> NDArray[np.integer]:
+        """Return the connected component of each vertex, shape (n,)."""
+        assert self.graph is not None
+        label: NDArray[np.integer] = self._surface().component[self.graph.vertex_node]
+        return label
+
+    def rows(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        """Return which of some vertices a layer's content has weights for, and their rows.
+
+        Shapes: below (n, j), the weights below the layer; returns rows (k, j).
+        """
+        made: Rows = getattr(self, f"_{layer.content.kind}")(layer, below, which)
+        return made
+
+    def _surface(self) -> SurfaceOperators:
+        assert self.graph is not None
+        return surface_of(self.graph) if self.operators is None else self.operators()
+
+    def _computed(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert self.computed is not None
+        weights = self.computed(layer)
+        return which, weights if which is None else weights[which]
+
+    def _file(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        weights = self.rig.weights
+        if weights is None:
+            raise WeightsError(f"{self.rig.name} has no weights in its file")
+        rows = weights if which is None else weights[which]
+        some = rows.any(axis=1)
+        if some.all():
+            return which, rows
+        return np.flatnonzero(some) if which is None else which[some], rows[some]
+
+    def _filled(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert isinstance(layer.content, Filled)
+        weights, rig = layer.content.weights, self.rig
+        columns = [joint_index(rig.skeleton, name) for name in weights]
+        which = np.arange(len(below)) if which is None else which
+        if rig.allowed is not None:
+            for name, column in zip(weights, columns, strict=True):
+                bad = np.flatnonzero(~rig.allowed[which, column])
+                if weights[name] and len(bad):
+                    place = f"vertex {which[bad[0]]}"
+                    if layer.mask.part is not None:
+                        place = f"the part of vertex {layer.mask.part}"
+                    raise ParameterError(f'the file cannot store weight of "{name}" for {place}')
+        count, many = len(which), len(columns)
+        rows = csr_array(
+            (np.tile(list(weights.values()), count), np.tile(columns, count),
+             np.arange(count + 1) * many), shape=(count, below.shape[1]),
+        )  # fmt: skip
+        return which, rows
+
+    def _attached(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert self.graph is not None
+        surface, node = self._surface(), self.graph.vertex_node
+        label = surface.component[node]
+        touching = np.zeros(label.max() + 1, np.bool_)
+        touching[label if which is None else label[which]] = True
+        if touching[label].all():
+            raise ParameterError("every component is to follow where it touches, and none is left")
+        first = np.unique(node, return_index=True)[1]
+        attached = attach(self.graph, surface, touching, below[first])
+        assert which is not None
+        rows = attached[node[which]]
+        if self.rig.allowed is not None:
+            rows = np.where(self.rig.allowed[which], rows, 0.0)
+        total = rows.sum(axis=1, keepdims=True)
+        return which, np.divide(rows, total, out=below[which], where=total > 0)
+
+    def _painted(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        content = layer.content
+        assert isinstance(content, Painted)
+        columns = np.array([joint_index(self.rig.skeleton, name) for name in content.joints])
+        rows, vertices = content.rows, content.vertices.astype(np.intp)
+        rows = csr_array(
+            (rows.data, columns[rows.indices], rows.indptr), shape=(len(vertices), below.shape[1])
+        )
+        if which is None:
+            return vertices, rows
+        some = np.isin(vertices, which, assume_unique=True)
+        return vertices[some], rows[np.flatnonzero(some)]
+
+    def _smoothed(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        content = layer.content
+        assert isinstance(content, Smoothed)
+        neighbours = self._through if content.through else self._over
+        return which, self._pruned(neighbours.smooth(below, content.steps, which), which)
+
+    def _mirrored(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert isinstance(layer.content, Mirrored)
+        points, mirror = self.rig.mesh.vertices, find_mirror(self.rig)
+        rows = mirrored(below, mirror, points, layer.content.side, which)
+        return which, balanced(self._pruned(rows, which), mirror, which)
+
+    def _locked(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert isinstance(layer.content, Locked)
+        joints = list(layer.content.joints)
+        rows = lock_joints(self.rig, below, joints, self.method.max_influences, which)
+        return which, rows
+
+    @property
+    def _over(self) -> Neighbours:
+        mesh = self.rig.mesh
+        if mesh not in NEIGHBOURS:
+            NEIGHBOURS[mesh] = Neighbours.of(mesh)
+        return NEIGHBOURS[mesh]
+
+    @cached_property
+    def _through(self) -> Neighbours:
+        assert self.graph is not None
+        lattice = self.graph.lattice
+        return Neighbours.of(self.rig.mesh, within=NEAR * (lattice.size / lattice.resolution))
+
+    def _pruned(self, rows: NDArray[np.float64], which: Which) -> NDArray[np.float64]:
+        """Keep the largest weights that the file can store, unless a row would be left empty."""
+        allowed = self.rig.allowed
+        if allowed is not None:
+            storable = np.where(allowed if which is None else allowed[which], rows, 0.0)
+            total = storable.sum(axis=1, keepdims=True)
+            rows = np.divide(storable, total, out=rows.copy(), where=total > 0)
+        method = self.method
+        return prune(rows, method.max_influences, method.threshold, self.priority)
