@@ -20,6 +20,7 @@ from cutcell_lab.benchmarks.tables import Table, ratio, seconds
 from scripts.get_chromium import FLAGS, find
 
 from .page_joints import joints_table
+from .page_strokes import strokes_table
 from .page_subjects import SIZE, Material, cutcell_subject, material, vtk_subject
 from .page_visitor import Visitor, served
 from .page_weights import weights_table
@@ -36,10 +37,13 @@ def tables(options: argparse.Namespace) -> Iterator[Table]:
     chromium = find()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        if options.only != "joints":
+        if options.only is None:
             yield from _side_by_side(browser, options)
             yield weights_table(browser, options.vertices, options.weights)
-        yield joints_table(browser, options.vertices, options.joints)
+        if options.only != "strokes":
+            yield joints_table(browser, options.vertices, options.joints)
+        if options.only != "joints":
+            yield strokes_table(browser, *options.large, options.strokes)
         browser.close()
 
 
@@ -129,7 +133,15 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--changes", type=int, default=2, help="of each kind, every round")
     parser.add_argument("--weights", type=int, default=10, help="moves of each slider")
     parser.add_argument("--joints", type=int, default=40, help="moves of a joint that is dragged")
-    parser.add_argument("--only", choices=["joints"], help="measure nothing else")
+    parser.add_argument("--strokes", type=int, default=20, help="of the brush")
+    parser.add_argument(
+        "--large",
+        type=int,
+        nargs=2,
+        default=(300_000, 200),
+        help="vertices and joints of the character that is painted",
+    )
+    parser.add_argument("--only", choices=["joints", "strokes"], help="measure nothing else")
     parser.add_argument("--play", type=float, default=4.0, help="seconds of motion")
     parser.add_argument("--resolution", type=int, default=72)
     parser.add_argument("--vertices", type=int, default=20000)

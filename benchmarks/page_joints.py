@@ -63,7 +63,7 @@ def _dragged(browser: Browser, address: str, joint: str, moves: int) -> NDArray:
     page = visitor.page
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
     page.wait_for_timeout(1500)  # the sidebar follows what was bound
-    page.get_by_role("switch", name="Move it in the scene").click()
+    page.get_by_role("switch", name="Show move handle").click()
     page.wait_for_function("__cutcell.jointHandle()")
     page.evaluate("watch.stop()")
     x, y = page.evaluate("__cutcell.jointHandle()")
@@ -78,7 +78,7 @@ def _dragged(browser: Browser, address: str, joint: str, moves: int) -> NDArray:
         if seen_at is not None:
             times_of.append(np.array(seen_at) / 1000 - visitor.wait("watch.heard"))
         # The exact colours follow when the pointer rests.
-        page.wait_for_function("__cutcell.serverRests()")
+        page.wait_for_function("__cutcell.serverIdle()")
         page.wait_for_timeout(300)
     page.mouse.up()
     page.close()

@@ -14,9 +14,9 @@ import trimesh
 import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
-from cutcell_app.scenes.common import camera_part
-from cutcell_app.scenes.pose import clip_part
-from cutcell_app.state import State
+from cutcell_app.document.state import State
+from cutcell_app.features.character import camera_part
+from cutcell_app.features.pose.scene import clip_part
 from cutcell_app.widgets.view import SceneView
 from cutcell_lab.benchmarks.shapes import chain
 from cutcell_viewers.camera import framing
@@ -24,7 +24,6 @@ from cutcell_viewers.character import body, bones, pose_in_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.graph_scene import graph_scene
 from cutcell_viewers.pose_scene import swing
-from cutcell_viewers.skin import moved
 
 SIZE = (800, 600)
 BONES = 50
@@ -73,14 +72,14 @@ class Material:
         )
 
 
-def character(vertices: int) -> Rig:
+def character(vertices: int, joints: int = BONES) -> Rig:
     """Make a bumpy capsule with a chain of bones along it."""
     around = round(np.sqrt(vertices))
     mesh = trimesh.creation.uv_sphere(count=[around // 2, around])
     x, y, z = np.array(mesh.vertices).T
     bumps = 1 + 0.1 * np.sin(6 * z) * np.cos(5 * np.arctan2(y, x))
     surface = TriangleMesh(np.stack([x * bumps, 2 * z, -y * bumps], axis=1), mesh.faces)
-    return Rig(surface, chain(surface, BONES))
+    return Rig(surface, chain(surface, joints))
 
 
 def material(resolution: int, vertices: int) -> Material:
@@ -94,7 +93,7 @@ def material(resolution: int, vertices: int) -> Material:
     fields = [_up_to_one(bound.distances.on_mesh(joint)) for joint in joints]
     rest = body(rig, bound.weights, scalars=fields[0], colormap="distance")
     assert rest.skin is not None
-    points = [moved(rest.points, rest.skin, pose).astype(np.float32) for pose in poses]
+    points = [rest.points_in(pose).astype(np.float32) for pose in poses]
     actors = {"body": rest, **graph_scene(rig, bound.graph).actors, **bones(rig)}
     return Material(rig, Description(actors), clip, poses, points, fields)
 

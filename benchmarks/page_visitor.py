@@ -15,7 +15,7 @@ from cutcell_app.widgets.modules import STATIC
 
 from .page_subjects import SIZE, Subject
 
-PATIENCE = 90.0
+PATIENCE = 900.0
 WATCH = (Path(__file__).parent / "page_watch.js").read_text(encoding="utf-8")
 
 
@@ -49,7 +49,7 @@ class Watched:
         self.page: Page = browser.new_page(viewport={"width": width, "height": height})
         self.page.add_init_script(WATCH)
         begin = time.time()
-        self.page.goto(url)
+        self.page.goto(url, timeout=1000 * PATIENCE)
         self.first_picture = self.wait("watch.painted") - begin
 
     def wait(self, what: str) -> float:

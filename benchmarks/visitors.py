@@ -103,6 +103,10 @@ class Visitor:
             self._arrived.wait(0.5)
         raise TimeoutError(f"the server did not say {pattern}")
 
+    def has_heard(self, pattern: str) -> bool:
+        """Return whether the server has sent something that matches."""
+        return any(re.search(pattern, text) for text in self.heard)
+
     def close(self) -> None:
         """Leave."""
         _loop().call_soon_threadsafe(self._socket.close)

@@ -1,7 +1,8 @@
 """A laboratory beside cutcell: other methods, data sets for training, and networks.
 
-It uses `cutcell`, which does not know of it. Its commands, `cutcell compare`, `cutcell dataset` and
-`cutcell networks`, come to the command line by an entry point.
+It uses `cutcell`, which does not know of it. Its commands, `cutcell compare`, `cutcell dataset`,
+`cutcell evaluate`, `cutcell networks` and `cutcell sweep`, come to the command line by an entry
+point.
 """
 
 import lazy_loader

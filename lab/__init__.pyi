@@ -1,5 +1,10 @@
 from . import baselines as baselines
 from . import dataset as dataset
+from . import disagreement as disagreement
 from . import metrics as metrics
 from . import networks as networks
 from .baselines.compare import compare as compare
+from .evaluation import evaluate as evaluate
+from .sweeps import Sweep as Sweep
+from .sweeps import SweepPoint as SweepPoint
+from .sweeps import sweep as sweep

@@ -6,7 +6,7 @@
 
 Trained on ../shared/data/train, by one maker; measured on rigs and wild, parted into characters by
 other makers and by the same. Every network and every result is kept in the folder after it is
-there: what was stopped goes on, and more epochs go on from fewer. Needs cutcell[networks].
+there: a stopped run continues, and more epochs continue from fewer. Needs cutcell[networks].
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ def _key(run: Run, options: argparse.Namespace) -> str:
 
 
 def _before(stored: dict[str, dict], run: Run, options: argparse.Namespace) -> float:
-    """Return the CPU seconds of the same run with fewer epochs, which it went on from."""
+    """Return the CPU seconds of the same run with fewer epochs, which it continued."""
     same, _, epochs = _key(run, options).rpartition(" ")
     fewer = (key for key in stored if key.rpartition(" ")[0] == same)
     earlier = [key for key in fewer if int(key.rpartition(" ")[2]) < int(epochs)]

@@ -5,7 +5,7 @@
     python -m cutcell_lab.benchmarks.quality RIG... [--methods A,B] [--json FILE] [--plot FILE]
 
 The first form takes an hour or more, most of it tetrahedra, and keeps what it has in
-docs/quality.json after each rig: with --resume it goes on after what is there. It measures
+docs/quality.json after each rig: with --resume it continues after the last one. It measures
 the rigs in ../shared/data/rigs; where ../shared/data/bone_heat holds Blender's automatic weights
 of a rig, they are a separate method. With rigs named it only prints.
 """

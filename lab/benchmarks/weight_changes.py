@@ -1,11 +1,13 @@
 """Show where weights differ between two versions of the code, and whether they got better.
 
     python -m cutcell_lab.benchmarks.weight_changes record FOLDER [SET...] [--method M]
-    python -m cutcell_lab.benchmarks.weight_changes compare OLD NEW [--out docs/quality.md]
+    python -m cutcell_lab.benchmarks.weight_changes compare OLD... NEW [--out docs/quality.md]
 
 `record` binds all characters of the sets (demos, rigs, wild, more) with the joints of their makers
 ("known") and with their weights forgotten ("fresh"), and writes the weights into a folder; run it
-in a checkout of each version. `compare` reads two such folders and prints tables.
+in a checkout of each version. `compare` reads such folders, which name the versions: it prints each
+version's scores beside those of the one before, what differs between the first and the last, and
+the worst characters.
 """
 
 from __future__ import annotations
@@ -22,13 +24,19 @@ import cutcell
 from cutcell.rig import Rig
 
 from .document import fill
+from .makers import maker_of
 from .rigs import ROOT
 from .tables import Table
 from .wild import MODES, characters, score_of
 
 SETS = ("demos", "rigs", "wild", "more")
+"""The demos are not judged: their weights are made up."""
 CHANGED = 0.01
 """A weight that differs by more than this has changed."""
+LARGE = 20
+"""Deformation error, in cm², of a character that failed."""
+WORST = 10
+"""Characters that are listed as the worst."""
 NOTABLE = 0.03
 """A character is better or worse if its score changes by more than this part."""
 
@@ -139,30 +147,68 @@ def largest_changes(groups: dict[str, list[Change]]) -> Table:
     return table
 
 
-def summary(groups: dict[str, list[Change]]) -> Table:
-    """Put medians and means of all sets together."""
-    columns = ["set", "joints", "characters", "changed", "L1 median", "L1 mean", "cm² median"]
-    columns += ["cm² mean", "cm² geometric mean", "over 20 cm²", "better : worse"]
-    table = Table("All sets", columns)
-    rows = [(group, [one]) for group, one in groups.items() if group != "demos"]
-    rows.append(("all", [one for group, one in groups.items() if group != "demos"]))
-    for group, parts in rows:
+def scores_of(folder: Path, mode: str) -> dict[str, NDArray[np.float64]]:
+    """Read the scores (L1 and cm²) of the characters of one set that have weights, by name."""
+    scores = {}
+    for path in sorted(folder.glob(f"*.{mode}.npz")):
+        with np.load(path) as recorded:
+            if np.isfinite(recorded["scores"]).all():
+                scores[path.name.removesuffix(f".{mode}.npz")] = recorded["scores"]
+    return scores
+
+
+def summary(versions: Sequence[Path]) -> Table:
+    """Put the scores of all versions together, over each set and over all."""
+    columns = ["set", "joints", "characters", "version", "L1 median", "L1 mean", "cm² median"]
+    columns += ["cm² mean", "geometric mean", "of makers", f"over {LARGE}", "better : worse"]
+    note = (
+        f"Geometric means of cm² over the characters, and over makers. "
+        f"Better and worse: characters whose cm² differ by over {NOTABLE:.0%} from the row above."
+    )
+    table = Table("All sets", columns, note)
+    groups = [group for group in SETS[1:] if (versions[-1] / group).is_dir()]
+    for name, parts in (*((group, [group]) for group in groups), ("all", groups)):
         for mode in MODES:
-            chosen = [one for part in parts for one in part if one.mode == mode]
-            l1 = np.array([one.l1 for one in chosen])
-            error = np.array([one.deformation for one in chosen])
-            ratio = error[:, 1] / error[:, 0]
-            table.add(
-                group,
-                mode,
-                len(chosen),
-                sum(one.vertices > 0 for one in chosen),
-                *("{:.3f} → {:.3f}".format(*f(l1, axis=0)) for f in (np.median, np.mean)),
-                *("{:.2f} → {:.2f}".format(*f(error, axis=0)) for f in (np.median, np.mean)),
-                "{:.2f} → {:.2f}".format(*np.exp(np.log(error).mean(axis=0))),
-                "{} → {}".format(*(error > 20).sum(axis=0)),
-                f"{(ratio < 1 - NOTABLE).sum()} : {(ratio > 1 + NOTABLE).sum()}",
-            )
+            before = None
+            for version in versions:
+                scores = {k: s for g in parts for k, s in scores_of(version / g, mode).items()}
+                if not scores:
+                    continue
+                l1, error = np.array(list(scores.values())).T
+                ratio = error / (error if before is None else before)
+                table.add(
+                    name,
+                    mode,
+                    len(scores),
+                    version.name,
+                    *(f"{f(l1):.3f}" for f in (np.median, np.mean)),
+                    *(f"{f(error):.2f}" for f in (np.median, np.mean)),
+                    f"{np.exp(np.log(error).mean()):.2f}",
+                    f"{_mean_over_makers(list(scores), error):.2f}",
+                    int((error > LARGE).sum()),
+                    f"{(ratio < 1 - NOTABLE).sum()} : {(ratio > 1 + NOTABLE).sum()}",
+                )
+                before = error
+    return table
+
+
+def _mean_over_makers(names: Sequence[str], error: NDArray[np.float64]) -> float:
+    """Average the logarithms of errors (n,) of each maker, and then over the makers."""
+    maker = np.unique([maker_of(name) for name in names], return_inverse=True)[1]
+    return float(np.exp((np.bincount(maker, np.log(error)) / np.bincount(maker)).mean()))
+
+
+def worst(version: Path) -> Table:
+    """List the characters with the largest deformation errors, by their makers' joints."""
+    table = Table("The worst characters", ["character", "set", *(f"{m} cm²" for m in MODES)])
+    scores = [
+        (group, name, score[1])
+        for group in SETS[1:]
+        for name, score in scores_of(version / group, "known").items()
+    ]
+    for group, name, error in sorted(scores, key=lambda one: -one[2])[:WORST]:
+        fresh = scores_of(version / group, "fresh")[name][1]
+        table.add(name, group, f"{error:.1f}", f"{fresh:.1f}")
     return table
 
 
@@ -176,19 +222,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     recording.add_argument("--resolution", type=int, default=64)
     recording.add_argument("--method", choices=("animation", "paper"), default="animation")
     comparing = commands.add_parser("compare")
-    comparing.add_argument("old", type=Path)
-    comparing.add_argument("new", type=Path)
+    comparing.add_argument("folders", type=Path, nargs="+")
     comparing.add_argument("--out", type=Path, help="a document whose tables to replace")
     options = parser.parse_args(arguments)
     if options.command == "record":
         record(options.folder, options.sets or SETS, options.resolution, options.method)
         return
     groups = {
-        group: list(changes(options.old / group, options.new / group))
+        group: list(changes(options.folders[0] / group, options.folders[-1] / group))
         for group in SETS
-        if (options.new / group).is_dir()
+        if (options.folders[-1] / group).is_dir()
     }
-    tables = [summary(groups), largest_changes(groups)]
+    tables = [summary(options.folders), largest_changes(groups), worst(options.folders[-1])]
     tables += [change_table(group, one) for group, one in groups.items()]
     text = "\n\n".join(table.markdown() for table in tables)
     print(text)

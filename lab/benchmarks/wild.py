@@ -162,9 +162,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("sets", nargs="*", metavar="SET", help=f"of {', '.join(SETS)}")
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--out", type=Path, help="a document whose tables to replace")
-    parser.add_argument(
-        "--learned", action="store_true", help="train without each maker, and measure that, too"
-    )
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.sets if name not in SETS]:
         parser.error(f"no set {unknown[0]}; there are {', '.join(SETS)}")
@@ -178,10 +175,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.out:  # of the train set, which is long and by one maker, only the summary
         listed = [text for group, text in tables.items() if group != "train"]
         fill(options.out, {"wild": "\n\n".join([overall, *listed])})
-    if options.learned:
-        from .left_out import report  # which imports this module
-
-        report()
 
 
 if __name__ == "__main__":

@@ -169,11 +169,13 @@ def bind(
                 "bound": report.bound,
                 "known": report.known,
                 "failed": report.failures,
+                "stretched": report.stretched,
                 "seconds": round(report.seconds, 3),
             }
         )
     elif not quiet:
         print_failures(report.failures)
+        print_stretched(report.stretched)
         print_table(str(out), bind_counts(report).items())
 
 
@@ -229,9 +231,19 @@ def two_or_more(paths: list[Path], what: str) -> list[Path]:
 
 def print_failures(failures: dict[str, str]) -> None:
     """Print the first failures, and how many more there are."""
-    print_warnings([f"{name}: {why}" for name, why in list(failures.items())[:FEW]])
-    if len(failures) > FEW:
-        print_warnings([f"and {len(failures) - FEW:,} more failed; the report lists all"])
+    _print_first([f"{name}: {why}" for name, why in failures.items()], "failed")
+
+
+def print_stretched(shares: dict[str, float]) -> None:
+    """Print the characters of which most stretches as joints turn, and how many more there are."""
+    part = "of the surface stretches or shrinks to more than twice when joints turn"
+    _print_first([f"{name}: {share:.0%} {part}" for name, share in shares.items()], "stretch")
+
+
+def _print_first(lines: list[str], verb: str) -> None:
+    print_warnings(lines[:FEW])
+    if len(lines) > FEW:
+        print_warnings([f"and {len(lines) - FEW:,} more {verb}; the report lists all"])
 
 
 Step = Callable[[int, int | None, str], Any]

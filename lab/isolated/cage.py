@@ -26,14 +26,14 @@ def make_cage(solid, points, faces):
     corners = vertices[triangles]
     if np.linalg.det(corners).sum() < 0:
         triangles = triangles[:, ::-1]
-    wanted = int(faces)
-    while wanted < len(triangles):
+    count = int(faces)
+    while count < len(triangles):
         less, fewer = igl.decimate(
-            np.asfortranarray(vertices), np.asfortranarray(triangles.astype(np.int32)), wanted
+            np.asfortranarray(vertices), np.asfortranarray(triangles.astype(np.int32)), count
         )[:2]
         if holds(less, fewer, points):
             return {"vertices": less, "faces": fewer}
-        wanted *= 2
+        count *= 2
     if not holds(vertices, triangles, points):
         raise RuntimeError("no cage could be found that holds the whole mesh")
     return {"vertices": vertices, "faces": triangles}

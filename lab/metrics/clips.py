@@ -5,17 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose import linear_blend_skinning
-from cutcell.rig import Rig
+from cutcell.pose.skin import Gap
+from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
+from cutcell.runtime.progress import Progress, silent
 
 from .deformation import CM2, check_fit, longest_side
 from .weight_error import checked_pair
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""
+NEARLY_ALL = 0.995
+"""Part of the vertices that `motion_error` calls nearly all."""
 
 
 @dataclass(frozen=True)
@@ -76,20 +80,62 @@ def clip_error(
     weights, targets = checked_pair(predicted, reference)
     check_fit(weights, rig.mesh, rig.skeleton)
     share = vertex_shares(rig.mesh, count)
-    unit = CM2 / longest_side(rig.mesh) ** 2
     errors = []
     for clip in rig.clips:
-        times = clip.times
-        chosen = np.unique(np.linspace(0, len(times) - 1, FRAMES).round().astype(int))
-        chosen = chosen[chosen >= 0]
+        times = _compared_times(clip)
         largest, total = np.zeros(len(weights)), 0.0
-        for frame in chosen:
-            transforms = clip.sample(times[frame])
-            difference = linear_blend_skinning(rig.mesh.vertices, weights, transforms)
-            difference -= linear_blend_skinning(rig.mesh.vertices, targets, transforms)
-            squared = unit * (difference * difference).sum(axis=1)
+        for time in times:
+            transforms = clip.sample(time)
+            squared = CM2 * squared_distances(rig.mesh, weights, targets, transforms)
             largest = np.maximum(largest, squared)
             total += float(share @ squared)
-        mean = total / max(len(chosen), 1)
-        errors.append(ClipError(clip.name, len(chosen), mean, float(share @ largest)))
+        mean = total / max(len(times), 1)
+        errors.append(ClipError(clip.name, len(times), mean, float(share @ largest)))
     return tuple(errors)
+
+
+def squared_distances(
+    mesh: TriangleMesh,
+    weights: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    transforms: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the squared distance (n,) of each posed vertex; the longest side being 1."""
+    difference = linear_blend_skinning(mesh.vertices, weights, transforms)
+    difference -= linear_blend_skinning(mesh.vertices, targets, transforms)
+    return (difference * difference).sum(axis=1) / longest_side(mesh) ** 2
+
+
+def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[float, float, float]:
+    """Return the distances between two sets of weights while a clip plays, in the gap's unit.
+
+    Parameters
+    ----------
+    clip : Clip
+        In the space of the gap's points.
+    gap : Gap
+    progress : callable
+        See `cutcell.runtime.progress`.
+
+    Returns
+    -------
+    rms : float
+        Root mean square over frames and vertices.
+    greatest : float
+    most : float
+        What nearly all vertices stay below, in every frame.
+    """
+    times = _compared_times(clip)
+    squares = greatest = most = 0.0
+    for done, time in enumerate(times):
+        progress("error", done / len(times))
+        lengths = gap.lengths(clip.sample(time))
+        squares += float(np.square(lengths).mean()) / len(times)
+        greatest = max(greatest, float(lengths.max()))
+        most = max(most, float(np.quantile(lengths, NEARLY_ALL)))
+    return float(np.sqrt(squares)), greatest, most
+
+
+def _compared_times(clip: Clip) -> NDArray[np.float64]:
+    frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
+    return clip.times[frames[frames >= 0]]

@@ -22,6 +22,8 @@ TURNED: tuple[Turned, ...] = get_args(Turned)
 """Named choices of the joints to turn."""
 CM2 = 1e4
 """Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
+ROUNDING = 1e-12
+"""Differences of sums of weights up to this are none."""
 BLOCK_NUMBERS = 1 << 20
 """Numbers of each array of a block of vertices: 8 MB."""
 
@@ -149,8 +151,7 @@ def deformation_error(
     turned = _checked_joints(joints, skeleton)
     share = vertex_shares(mesh, count)
 
-    unit = CM2 / longest_side(mesh) ** 2
-    chord = 2 * (1 - np.cos(np.radians(degrees))) * unit
+    chord = squared_chord(mesh, degrees)
     vertex = np.zeros(len(weights))
     joint = np.full(len(weights), turned[0], np.int32)
     turn_mean = np.zeros((len(skeleton.joints), 3))
@@ -162,19 +163,39 @@ def deformation_error(
         part = slice(first, first + step)
         moved = (weights[part] - targets[part]) @ below  # (block, turned): S - S'
         for k, j in enumerate(turned):
-            arm = (mesh.vertices[part] - skeleton.joints[j]) ** 2
-            off_axis = arm.sum(axis=1, keepdims=True) - arm  # (block, 3 axes)
-            error = chord * off_axis * (moved[:, k, None] ** 2)
-            turn_mean[j] += share[part] @ error
-            counted = error * (share[part, None] > 0)
-            turn_largest[j] = np.maximum(turn_largest[j], counted.max(axis=0))
+            rows = np.flatnonzero(np.abs(moved[:, k]) > ROUNDING)
+            at = first + rows
+            error = turn_error(mesh.vertices[at], skeleton.joints[j], moved[rows, k], chord)
+            turn_mean[j] += share[at] @ error
+            counted = error[share[at] > 0]
+            turn_largest[j] = np.maximum(turn_largest[j], counted.max(axis=0, initial=0))
             largest = error.max(axis=1)
-            higher = largest > vertex[part]
-            vertex[part][higher] = largest[higher]
-            joint[part][higher] = j
+            higher = largest > vertex[at]
+            vertex[at[higher]] = largest[higher]
+            joint[at[higher]] = j
     return DeformationError(
         float(share @ vertex), vertex, joint, turn_mean, turn_largest, skeleton.names
     )
+
+
+def squared_chord(mesh: TriangleMesh, degrees: float) -> float:
+    """Return the factor of `turn_error`: the squared chord of a turn, in cm² at a 1 m mesh."""
+    return float(2 * (1 - np.cos(np.radians(degrees))) * CM2 / longest_side(mesh) ** 2)
+
+
+def turn_error(
+    points: NDArray[np.float64],
+    joint: NDArray[np.float64],
+    moved: NDArray[np.float64],
+    chord: float,
+) -> NDArray[np.float64]:
+    """Return the squared distances (p, 3) of points (p, 3) as a joint (3,) turns about x, y, z.
+
+    `moved` (p,) is the difference of the weights that follow the joint.
+    """
+    arm = (points - joint) ** 2
+    off_axis = arm.sum(axis=1, keepdims=True) - arm
+    return np.asarray(chord * off_axis * moved[:, None] ** 2)
 
 
 def parts_of(rig: Rig | tuple[TriangleMesh, Skeleton]) -> tuple[TriangleMesh, Skeleton]:
@@ -198,6 +219,31 @@ def longest_side(mesh: TriangleMesh) -> float:
     """Return the longest side of the bounding box, in the file's units."""
     low, high = mesh.bounds
     return float((high - low).max())
+
+
+def scene_error(
+    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
+) -> DeformationError:
+    """Compute the deformation error with turns about the axes of the scene, where y is up.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights, reference : array_like, shape (n, j)
+    progress : callable
+        See `cutcell.runtime.progress`.
+
+    Returns
+    -------
+    DeformationError
+    """
+
+    def placed(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return points @ rig.world[:3, :3].T + rig.world[:3, 3]
+
+    mesh, bones = TriangleMesh(placed(rig.mesh.vertices), rig.mesh.faces), rig.skeleton
+    skeleton = Skeleton(placed(bones.joints), bones.parents, bones.names, bones.deform)
+    return deformation_error((mesh, skeleton), weights, reference, progress=progress)
 
 
 def _checked_joints(joints: Turned | ArrayLike, skeleton: Skeleton) -> NDArray[np.intp]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.errors import ParameterError, WeightsError
+from cutcell.rig.checks import check_number
 
 THRESHOLD = 0.001
 """A joint moves a vertex if its weight is greater."""
@@ -48,6 +49,8 @@ def precision_recall(
     predicted: ArrayLike,
     reference: ArrayLike,
     shares: ArrayLike | None = None,
+    *,
+    threshold: float = THRESHOLD,
 ) -> tuple[float, float]:
     """Compare which joints move which vertices, whatever the amounts.
 
@@ -56,6 +59,8 @@ def precision_recall(
     predicted, reference : array_like, shape (n, j)
     shares : array_like, shape (n,), optional
         How much each vertex counts; evenly when left out.
+    threshold : float
+        A joint moves a vertex if its weight is greater, 0 to 1; 0.001 as in the paper.
 
     Returns
     -------
@@ -72,11 +77,12 @@ def precision_recall(
 
     References
     ----------
-    Paper section 4.3, with its threshold.
+    Paper section 4.3; Xu et al. 2020 (RigNet), with a threshold of 0.0001.
     """
     weights, targets = checked_pair(predicted, reference)
     share = checked_shares(shares, len(weights))
-    influences, expected = weights > THRESHOLD, targets > THRESHOLD
+    threshold = check_number("threshold", threshold, 0, 1)
+    influences, expected = weights > threshold, targets > threshold
     both = share @ (influences & expected).sum(axis=1)
     of_predicted, of_reference = share @ influences.sum(axis=1), share @ expected.sum(axis=1)
     nan = float("nan")

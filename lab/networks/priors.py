@@ -68,8 +68,8 @@ def prior_of(
 def code_digest() -> str:
     """Hash the code that samples and priors depend on: all but the networks themselves."""
     networks = Path(__file__).resolve().parent
-    beside = (networks.parent / name for name in ("baselines", "dataset"))
-    return source_digest(PACKAGE, *beside, *(networks / name for name in OWN))
+    packages = (networks.parent / name for name in ("baselines", "dataset"))
+    return source_digest(PACKAGE, *packages, *(networks / name for name in OWN))
 
 
 def cache_folder() -> Path:

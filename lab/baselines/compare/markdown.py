@@ -23,7 +23,7 @@ def comparison_markdown(comparison: Comparison) -> str:
     """
     measures = ("l1", "precision", "recall", "deformation", "clips", "crosstalk", "seconds")
     lines = ["## All rigs: median, mean (rigs)", ""]
-    lines += _table(
+    lines += markdown_table(
         ["method", *(MEASURES[name] for name in measures), "no weight", "worst deformation"],
         [_summary_row(comparison, method, measures) for method in comparison.methods],
     )
@@ -32,7 +32,7 @@ def comparison_markdown(comparison: Comparison) -> str:
             [rig.name, *(_cell(score, name) for score in rig.scores)] for rig in comparison.rigs
         ]
         lines += ["", f"## {MEASURES[name]}", ""]
-        lines += _table(["rig", *comparison.methods], rows)
+        lines += markdown_table(["rig", *comparison.methods], rows)
     failures = comparison.failures()
     if failures:
         lines += ["", "## Failed", ""]
@@ -70,7 +70,8 @@ def text(value: float | None, measure: str) -> str:
     return f"{value:.{digits}f}"
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    """Return the lines of a table; the first column is text, the others are numbers."""
     align = ["---", *["---:"] * (len(head) - 1)]
     return ["| " + " | ".join(map(_cell_text, row)) + " |" for row in (head, align, *rows)]
 

@@ -21,7 +21,7 @@ from .pictures import picture
 
 WORST = 5
 """Assets that are shown for each metric."""
-MAX_FAILURES = 500
+MAX_LISTED = 500
 LOW_IS_BAD = ("precision", "recall")
 
 STYLE = """
@@ -48,6 +48,7 @@ def write_bind_report(report: BindReport, path: Path) -> None:
             ]
         ),
         _failures(report),
+        _stretched(report),
     ]
     for metric in METRICS:
         parts += _worst(report.store, good, metric)
@@ -62,18 +63,28 @@ def bind_counts(report: BindReport) -> dict[str, str]:
         "bound now": f"{report.bound:,}",
         "in the store before": f"{report.known:,}",
         "failed": f"{report.failed:,}",
+        "stretched": f"{len(report.stretched):,}",
         "seconds": f"{report.seconds:,.1f}",
         "bytes": f"{sum(row['bytes'] or 0 for row in good):,}",
     }
 
 
 def _failures(report: BindReport) -> str:
-    failures = list(report.failures.items())
-    if not failures:
-        return "<h2>Failures</h2><p>None.</p>"
-    rest = len(failures) - MAX_FAILURES
+    return _listed("Failures", list(report.failures.items()))
+
+
+def _stretched(report: BindReport) -> str:
+    """List the assets of which much of the surface stretches as joints turn."""
+    shares = [(name, f"{share:.1%} of the surface") for name, share in report.stretched.items()]
+    return _listed("Stretched surfaces", shares)
+
+
+def _listed(title: str, rows: Sequence[tuple[str, str]]) -> str:
+    if not rows:
+        return f"<h2>{title}</h2><p>None.</p>"
+    rest = len(rows) - MAX_LISTED
     more = f"<p>and {rest:,} more; the manifest lists all.</p>" if rest > 0 else ""
-    return f"<h2>Failures</h2>{table(failures[:MAX_FAILURES])}{more}"
+    return f"<h2>{title}</h2>{table(rows[:MAX_LISTED])}{more}"
 
 
 def _worst(store: Path, rows: Sequence[Mapping[str, Any]], metric: str) -> list[str]:

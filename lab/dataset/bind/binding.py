@@ -15,6 +15,7 @@ from typing import Any
 
 from cutcell import __version__
 from cutcell.errors import CutcellError, TooLargeError
+from cutcell.pose.stretch import MAX_SHARE
 from cutcell.rig.checks import check_integer, check_number, one_line
 from cutcell.runtime.compile_cache import announce
 from cutcell.runtime.memory import SHARE, available_memory, gigabytes
@@ -59,6 +60,13 @@ class BindReport:
     def failures(self) -> dict[str, str]:
         """Why sources have no file, by name."""
         return {row["name"]: row["error"] for row in self.rows if row["error"]}
+
+    @property
+    def stretched(self) -> dict[str, float]:
+        """Shares of the surface that stretches, by name, where it is much; the largest first."""
+        shares = {row["name"]: row["stretch"] or 0.0 for row in self.rows}
+        much = {name: share for name, share in shares.items() if share > MAX_SHARE}
+        return dict(sorted(much.items(), key=lambda item: -item[1]))
 
 
 @dataclass(frozen=True)

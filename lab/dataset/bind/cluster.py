@@ -111,7 +111,7 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
                 worker_dashboard_address=LOOPBACK,
                 scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
-                silence_logs=50,
+                silence_logs=False,
                 host="127.0.0.1" if processes else None,
             ) as local,
             Client(local, set_as_default=False) as client,

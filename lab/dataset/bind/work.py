@@ -130,6 +130,7 @@ def _metrics(rig: Rig, binding: Binding) -> dict[str, float | None]:
     metrics: dict[str, float | None] = {
         "fallback": float((binding.distances.fallback > 0).mean()),
         "influences": float((binding.weights > 0).sum(axis=1).mean()),
+        "stretch": binding.stretch.share,
     }
     if rig.weights is None or not rig.weights.any():
         return metrics

@@ -41,7 +41,7 @@ SPARSE = 0.5
 """A table is stored as its entries if fewer than this share of them is finite and not zero."""
 
 SIZES = ("vertices", "faces", "joints", "bones", "nodes", "edges")
-METRICS = ("l1", "precision", "recall", "deformation", "fallback", "influences")
+METRICS = ("l1", "precision", "recall", "deformation", "fallback", "influences", "stretch")
 STAGES = ("load", "graph", "distances", "weights", "bones", "metrics")
 
 
