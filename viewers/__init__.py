@@ -41,12 +41,12 @@ def show(
     Parameters
     ----------
     description : Description
-        As `weights_scene` and its kin return, or `cutcell_app.render.describe`.
+        As `weights_scene` and its kin return, or `cutcell_app.headless.describe`.
     size : (int, int)
         Width and height in pixels.
     dark : bool
     camera : Camera, optional
-        Sees all of the scene when left out.
+        Sees all of the scene by default.
     legend : bool
 
     Returns
@@ -65,12 +65,12 @@ def show(
     from PIL import Image
 
     from .film import Order
-    from .worker import draw_apart
+    from .process import draw_isolated
 
     theme = "dark" if dark else "light"
     with TemporaryDirectory(prefix="cutcell-show-") as folder:
         path = Path(folder) / "scene.png"
-        draw_apart(Order(description, theme, size, camera, legend=legend), path)
+        draw_isolated(Order(description, theme, size, camera, legend=legend), path)
         return Image.open(BytesIO(path.read_bytes()))
 
 
@@ -98,7 +98,7 @@ def figure(
         Width and height of a panel's picture in pixels.
     dark : bool
     camera : Camera, optional
-        Sees all of every scene when left out.
+        Sees all of every scene by default.
     legend : bool
         Whether there are legends: a single one where all panels have the same scale.
 
@@ -114,13 +114,13 @@ def figure(
     from cutcell.errors import ParameterError
 
     from .film import Order
-    from .worker import draw_apart
+    from .process import draw_isolated
 
     if not descriptions:
         raise ParameterError("a figure needs at least one scene")
     panels, theme = tuple(descriptions), "dark" if dark else "light"
     order = Order(panels[0], theme, size, camera, legend=legend)
-    draw_apart(replace(order, panels=panels, captions=tuple(captions)), path)
+    draw_isolated(replace(order, panels=panels, captions=tuple(captions)), path)
 
 
 def plotter(
@@ -146,9 +146,9 @@ def plotter(
     pyvista.Plotter
     """
     from .camera import framing
-    from .opengl import require_opengl
     from .palette import DARK, LIGHT
     from .polydata import add_legend
+    from .process import require_opengl
     from .scene import Scene
 
     require_opengl()
@@ -163,7 +163,7 @@ def plotter(
 
 
 def describe(plotter: Plotter) -> Description:
-    """Return what a PyVista plotter shows as a scene of this package.
+    """Return the scene of a PyVista plotter as one of this package.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where the eye stands: what it sees, and from where it sees all of something."""
+"""Cameras, and the framing of boxes."""
 
 from dataclasses import dataclass, replace
 
@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 VIEW_ANGLE = 30.0
 PAGE_HEIGHT = 800.0
-"""Pixels that a page's canvas is high, where a picture is not of one that is known."""
+"""Height of the page's canvas in pixels, where a picture is not of a known canvas."""
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the eye is, what it looks at, and which way is up.
+    """Position, target and upward direction of a view.
 
-    `centre` is where the focal point appears: to the right of the picture's middle and above it,
-    in halves of the picture.
+    `centre` is the position of the target in the picture: to the right of the middle and above
+    it, in halves of the picture.
     """
 
     position: tuple[float, float, float]
@@ -25,7 +25,7 @@ class Camera:
 
 
 FRONT = (0.42, 0.16, 1.0)
-"""Where one looks from at first: the front, a little aside and above."""
+"""Direction of the first view: from the front, a little aside and above."""
 
 
 def framing(
@@ -41,7 +41,7 @@ def framing(
     aspect : float
         Width over height of the picture.
     direction : tuple of float, optional
-        Where to look from, not straight from above or below; `FRONT` when left out.
+        From the box to the eye, not vertical; `FRONT` by default.
     """
     low, high = np.asarray(bounds, float)
     centre = (low + high) / 2
@@ -55,7 +55,7 @@ def framing(
 
 
 def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:
-    """Return what is to the right, above and nearer where one looks from a direction, as rows."""
+    """Return the rows right, up and towards the eye of a view from a direction."""
     toward = np.array(direction, float)
     toward /= np.linalg.norm(toward)
     right = np.cross([0, 1, 0], toward)
@@ -64,28 +64,20 @@ def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:
 
 
 def sees(camera: Camera, points: NDArray[np.float64], aspect: float = 1.0) -> bool:
-    """Whether all points lie within a camera's picture.
-
-    Parameters
-    ----------
-    camera : Camera
-    points : array, shape (n, 3)
-    aspect : float
-        Width over height of the picture.
-    """
+    """Return whether all points (n, 3) are inside a picture of an aspect, width over height."""
     eye = np.array(camera.position)
     toward = eye - np.array(camera.focal_point)
     toward /= np.linalg.norm(toward)
     right = np.cross(camera.up, toward)
     right /= np.linalg.norm(right)
     ahead = points - eye
-    reach = -(ahead @ toward) * np.tan(np.radians(VIEW_ANGLE / 2))
+    half = -(ahead @ toward) * np.tan(np.radians(VIEW_ANGLE / 2))
     high = np.abs(ahead @ np.cross(toward, right))
-    return bool(np.all((high <= reach) & (np.abs(ahead @ right) <= aspect * reach)))
+    return bool(np.all((high <= half) & (np.abs(ahead @ right) <= aspect * half)))
 
 
 def around(camera: Camera, angle: float) -> Camera:
-    """Return a camera that went around what it looks at, by an angle in radians."""
+    """Return a camera that has circled its target by an angle in radians."""
     target = np.array(camera.focal_point)
     x, y, z = np.array(camera.position) - target
     c, s = np.cos(angle), np.sin(angle)

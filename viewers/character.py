@@ -4,23 +4,27 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from cutcell.geometry.edges import find_edges
 from cutcell.geometry.triangles import normals
-from cutcell.rig import Rig, Skeleton, TriangleMesh
+from cutcell.geometry.weld import weld
+from cutcell.pose.skin import Skin
+from cutcell.rig import Rig, TriangleMesh
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes
-from .skin import Skin, rigid_skin, skin_of_weights
 
 CREASE = np.cos(np.radians(45))
 """Faces that meet at a sharper angle than this keep their edge."""
 OUTLINE = 0.0009
 """Thickness of a bone's outline, relative to the diagonal of the character's box."""
-
 MAX_AT_A_PLACE = 64
-"""Vertices that share a normal; a heap of more is no smooth surface, and would take for ever."""
+"""Vertices at one place that share a normal; a larger heap is no smooth surface, and slow."""
+OCTAHEDRON = np.array(
+    [[0, 2, 1], [0, 3, 2], [0, 4, 3], [0, 1, 4], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 1]]
+)
 
 
 def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
@@ -28,9 +32,51 @@ def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(points, float) @ rig.world[:3, :3].T + rig.world[:3, 3]
 
 
+def from_scene(rig: Rig, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Take points (n, 3) from the scene's space to the rig's."""
+    return np.asarray(np.linalg.solve(rig.world[:3, :3], (points - rig.world[:3, 3]).T).T, float)
+
+
+def in_scene(rig: Rig, mesh: TriangleMesh) -> TriangleMesh:
+    """Return a mesh of the rig in the scene's space, still facing the same way."""
+    is_mirrored = np.linalg.det(rig.world[:3, :3]) < 0
+    faces = mesh.faces[:, ::-1] if is_mirrored else mesh.faces
+    return TriangleMesh(to_scene(rig, mesh.vertices), faces)
+
+
 def pose_in_scene(rig: Rig, transforms: ArrayLike) -> NDArray[np.float64]:
     """Take skinning matrices (..., 4, 4) from the rig's space to the scene's."""
     return rig.world @ np.asarray(transforms, float) @ np.linalg.inv(rig.world)
+
+
+def diagonal(rig: Rig) -> float:
+    """Return the diagonal of the character's box in the scene."""
+    return float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
+
+
+def character(
+    rig: Rig,
+    weights: ArrayLike | None = None,
+    chosen: int | None = None,
+    skeleton: bool = True,
+    bone_colors: ArrayLike | None = None,
+    **style: Any,
+) -> dict[str, Actor]:
+    """Return the actors "body", "bones", "bone outlines", "attachment 0", "attachment 1", ...
+
+    Parameters
+    ----------
+    rig : Rig
+    weights, **style
+        Of the `body`.
+    chosen, skeleton, bone_colors
+        Of the `bones`: which are highlighted, whether they are visible, and their colours.
+    """
+    return {
+        "body": body(rig, weights, **style),
+        **attachments(rig),
+        **bones(rig, chosen, skeleton, bone_colors),
+    }
 
 
 def body(rig: Rig, weights: ArrayLike | None = None, **style: Any) -> Actor:
@@ -40,25 +86,21 @@ def body(rig: Rig, weights: ArrayLike | None = None, **style: Any) -> Actor:
     ----------
     rig : Rig
     weights : array_like, shape (n, j), optional
-        How the body follows the joints; the file's own when left out.
-    **look
+        The file's own by default.
+    **style
         Other fields of `Actor`: `colors`, `scalars`, `opacity`, ...
     """
     weights = rig.weights if weights is None else weights
-    skin = None if weights is None else skin_of_weights(weights)
+    skin = None if weights is None else Skin.of_weights(weights)
     return _surface(rig, rig.mesh, skin, **{"color": BODY, **style})
 
 
 def attachments(rig: Rig, **style: Any) -> dict[str, Actor]:
-    """Return what hangs rigidly on joints, one actor each."""
+    """Return an actor for each attachment, which follows its joint rigidly."""
+    skins = [Skin.rigid(np.full(len(one.mesh.vertices), one.joint)) for one in rig.attachments]
     return {
-        f"attachment {i}": _surface(
-            rig,
-            one.mesh,
-            rigid_skin(np.full(len(one.mesh.vertices), one.joint)),
-            **{"color": ATTACHMENT, **style},
-        )
-        for i, one in enumerate(rig.attachments)
+        f"attachment {i}": _surface(rig, one.mesh, skin, **{"color": ATTACHMENT, **style})
+        for i, (one, skin) in enumerate(zip(rig.attachments, skins, strict=True))
     }
 
 
@@ -69,7 +111,7 @@ def bones(
     colors: ArrayLike | None = None,
     shown: ArrayLike | None = None,
 ) -> dict[str, Actor]:
-    """Return the skeleton, one octahedron a bone with an outline, drawn over everything.
+    """Return the actors "bones", octahedra drawn over everything, and "bone outlines".
 
     Parameters
     ----------
@@ -81,45 +123,30 @@ def bones(
         The colour of the bones of each deforming joint; the chosen one then differs
         by its outline.
     shown : array_like, shape (b,), bool, optional
-        Which of the bones of `drawn_segments` there are; all when left out.
-
-    Returns
-    -------
-    dict
-        The actors "bones" and "bone outlines".
+        The bones of `drawn_segments` that there are; all by default.
     """
     start, end, joint = drawn_segments(rig)
     if shown is not None:
-        visible_bones = np.asarray(shown, bool)
-        start, end, joint = start[visible_bones], end[visible_bones], joint[visible_bones]
-    size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
-    of_chosen = joint == chosen
-    edge = np.where(of_chosen[:, None] & (colors is not None), BONE_CHOSEN, BONE_EDGE)
-    if colors is None:
-        color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
-        color[of_chosen] = BONE_CHOSEN
-    else:
-        color = np.where(rig.skeleton.deform[joint, None], np.asarray(colors)[joint], BONE_IDLE)
-    thick = np.where(of_chosen & (colors is not None), 3.0, 1.0) * OUTLINE * size
-    common: dict[str, Any] = {
-        "cells": (_OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]).reshape(-1, 3),
-        "skin": rigid_skin(np.repeat(joint, 6)),
-        "overlay": True,
-        "clipped": False,
-        "visible": visible,
-    }
-    common["cells"] = common["cells"].astype(np.int32)
+        start, end, joint = (values[np.asarray(shown, bool)] for values in (start, end, joint))
+    size, deform = diagonal(rig), rig.skeleton.deform[joint]
+    is_chosen = joint == chosen
+    color = np.where(
+        deform[:, None], BONE if colors is None else np.asarray(colors)[joint], BONE_IDLE
+    )
+    edge = np.tile(BONE_EDGE, (len(joint), 1))
+    (color if colors is None else edge)[is_chosen] = BONE_CHOSEN
+    thick = np.where(is_chosen & (colors is not None), 3.0, 1.0) * OUTLINE * size
     return {
-        name: Actor(
-            "surface",
-            _octahedra(start, end, size, rig.skeleton.deform[joint], wider)
-            .reshape(-1, 3)
-            .astype(np.float32),
-            colors=np.repeat(to_bytes(color_of), 6, axis=0),
+        name: Actor.solid(
+            _octahedra(start, end, size, deform, wider).reshape(-1, 3),
+            (OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]).reshape(-1, 3),
+            colors=np.repeat(to_bytes(shade), 6, axis=0),
+            skin=Skin.rigid(np.repeat(joint, 6)),
             hull=name != "bones",
-            **common,
+            overlay=True,
+            visible=visible,
         )
-        for name, color_of, wider in (
+        for name, shade, wider in (
             ("bones", color, np.zeros(len(joint))),
             ("bone outlines", edge, thick),
         )
@@ -131,8 +158,7 @@ def drawn_segments(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
     """Return the bones as they are drawn and clicked.
 
-    A joint without children gets a short stub along its parent's direction, to have
-    something to click on.
+    A joint without children gets a short stub along its parent's direction, to be clicked.
 
     Returns
     -------
@@ -141,47 +167,40 @@ def drawn_segments(
     joint : array, shape (b,)
         The joint that each bone belongs to and moves with.
     """
-    skeleton = rig.skeleton
+    skeleton, size = rig.skeleton, diagonal(rig)
     joints = to_scene(rig, skeleton.joints)
-    size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
-    pairs = [(joints[j], joints[c], j) for j, cs in enumerate(skeleton.children) for c in cs]
-    for j in range(len(joints)):
-        if not len(skeleton.children[j]):
-            pairs.append((joints[j], joints[j] + _stub(skeleton, joints, j, size), j))
-    start, end, joint = zip(*pairs, strict=True) if pairs else ((), (), ())
-    shape = (-1, 3)
-    return np.reshape(start, shape), np.reshape(end, shape), np.array(joint, np.intp)
+    parents = np.asarray(skeleton.parents)
+    child = np.flatnonzero(parents >= 0)
+    child = child[np.argsort(parents[child], kind="stable")]
+    leaf = np.setdiff1d(np.arange(len(joints)), parents)
+    along = np.where(parents[leaf, None] >= 0, joints[leaf] - joints[parents[leaf]], [0.0, 1, 0])
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
+    stub = along * np.clip(0.4 * np.where(length > 0, length, 1), 0.006 * size, 0.03 * size)
+    joint = np.concatenate([parents[child], leaf])
+    return joints[joint], np.concatenate([joints[child], joints[leaf] + stub]), joint
 
 
-def _stub(skeleton: Skeleton, joints: NDArray, j: int, size: float) -> NDArray[np.float64]:
-    parent = skeleton.parents[j]
-    along = joints[j] - joints[parent] if parent >= 0 else np.array([0.0, 1, 0])
-    length = float(np.linalg.norm(along))
-    if length == 0:
-        along, length = np.array([0.0, 1, 0]), 1.0
-    return along / length * np.clip(0.4 * length, 0.006 * size, 0.03 * size)
+def bone_frames(
+    start: NDArray[np.float64], end: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], ...]:
+    """Return the lengths (n, 1) of segments, and three unit vectors (n, 3), the first along them.
 
-
-_OCTAHEDRON = np.array(
-    [[0, 2, 1], [0, 3, 2], [0, 4, 3], [0, 1, 4], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 1]]
-)
-
-
-def across(along: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return two unit vectors (n, 3) at right angles to others and to each other."""
+    Segments without length point up.
+    """
+    along = end - start
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
     helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
     side = np.cross(along, helper)
     side /= np.linalg.norm(side, axis=1, keepdims=True)
-    return side, np.cross(along, side)
+    return length, along, side, np.cross(along, side)
 
 
 def _octahedra(
     start: NDArray, end: NDArray, size: float, deform: NDArray[np.bool_], wider: NDArray
 ) -> NDArray[np.float64]:
-    along = end - start
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
-    side, other = across(along)
+    length, along, side, other = bone_frames(start, end)
     # Bones that move nothing are thin: some reach far out of the body.
     most = np.where(deform[:, None], 0.0105, 0.003) * size
     radius = np.clip(0.085 * length, 0.0025 * size, most)
@@ -193,14 +212,13 @@ def _octahedra(
 
 
 def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> Actor:
-    points = to_scene(rig, mesh.vertices)
-    # A mirrored space turns faces inside out; for looking, turn them back.
-    faces = mesh.faces if np.linalg.det(rig.world[:3, :3]) > 0 else mesh.faces[:, ::-1]
+    placed = in_scene(rig, mesh)
+    points, faces = placed.vertices, placed.faces
     return Actor(
         "surface",
-        points.astype(np.float32),
-        faces.astype(np.int32),
-        normals=smooth_normals(points, faces).astype(np.float32),
+        points,
+        faces,
+        normals=smooth_normals(points, faces),
         skin=skin,
         closed=is_closed(points, faces),
         **style,
@@ -208,7 +226,7 @@ def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> A
 
 
 def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
-    """Whether faces enclose what is behind them: no border, and every part faces outwards.
+    """Return whether faces enclose a volume: no border, and every part faces outwards.
 
     Vertices at the same place are one.
 
@@ -217,32 +235,20 @@ def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
     points : array, shape (n, 3)
     faces : array, shape (m, 3)
     """
-    place = _places(points)
-    corners = place[faces]
+    corners = weld(points, 0.0)[1][faces]
     whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    corners, count = corners[whole], int(place.max(initial=0)) + 1
-    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    # Each edge is run along as often one way as the other.
-    if not len(corners) or not np.array_equal(np.sort(a * count + b), np.sort(b * count + a)):
+    corners = corners[whole]
+    if not len(corners):
         return False
-    _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), (count, count)))
+    edges, incidence, _ = find_edges(corners)
+    if incidence.any():
+        return False
+    shape = (len(points), len(points))
+    _, part = connected_components(coo_array((np.ones(len(edges)), edges.T), shape))
     three = points[faces[whole]]
     volume = np.einsum("fi,fi->f", three[:, 0], np.cross(three[:, 1], three[:, 2]))
     volumes = np.bincount(part[corners[:, 0]], volume)
     return bool((volumes[np.unique(part[corners])] > 0).all())
-
-
-def _places(points: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the number of the place that each of the points (n, 3) is at."""
-    if not len(points):
-        return np.zeros(0, np.intp)
-    # Not by np.unique, which keeps Python's lock, and all other threads waiting, as it sorts rows.
-    order = np.lexsort(points.T)
-    ordered = points[order]
-    new = np.concatenate([[False], (ordered[1:] != ordered[:-1]).any(axis=1)])
-    place = np.empty(len(points), np.intp)
-    place[order] = np.cumsum(new)
-    return place
 
 
 def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
@@ -256,7 +262,7 @@ def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.fl
     for k in range(3):
         np.add.at(face_sum, faces[:, k], area)
     unit = face_sum / np.maximum(np.linalg.norm(face_sum, axis=1, keepdims=True), 1e-300)
-    group = _places(points)
+    group = weld(points, 0.0)[1]
     order = np.argsort(group, kind="stable")
     group = group[order]
     total = face_sum.copy()

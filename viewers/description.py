@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import FaceColors
+from cutcell.pose.skin import Blending, Skin
 from cutcell.runtime.repr import Summarized
 
 from .palette import BODY, Color
-from .skin import Skin
 
 if TYPE_CHECKING:
     from pyvista import DataSet
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Apart:
-    """A second skin, to colour points by how far it takes them from where the first does.
+    """A second skin, to colour points by the distance between their positions in both.
 
     Parameters
     ----------
@@ -42,21 +42,23 @@ class Reading:
     text : str
         The label before the value.
     values : array, shape (n,) or (m,), float32, optional
-        One for each point of a surface, or for each cell of lines; the actor's scalars when
-        left out.
+        One for each point of a surface, or for each cell of lines; the actor's scalars by default.
     names : tuple of str
-        Where there are any, the value is an index into these.
+        Names that the value is an index into.
     percent : bool
         Whether the value is a share, shown in percent.
     unit : float
-        What a value of 1 is in the unit that is shown.
+        Factor of the value.
     """
 
     text: str = ""
-    values: NDArray[np.float32] | None = None
+    values: NDArray[Any] | None = None
     names: tuple[str, ...] = ()
     percent: bool = False
     unit: float = 1.0
+
+    def __post_init__(self) -> None:
+        _convert(self, "values", np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,36 +81,35 @@ class Actor:
     scalars : array, shape (n,), float32, optional
         A value for each point, shown through `colormap` between `limits`.
     materials : FaceColors, optional
-        What colours the faces of a surface instead, by the description's `images`.
+        Colours of the faces of a surface instead, by the description's `images`.
     skin : Skin, optional
-        How the points follow the joints; without it they stand still.
+        Joints that the points follow; without it they stand still.
     apart : Apart, optional
-        While there is a pose, the scalars are the distances between where `skin`
-        and this one take each point.
+        In a pose, the scalars are the distances between the positions by `skin` and by this.
     width : float
         Of lines and points, in pixels of the screen, from far.
     thick : float
         Their radius in the scene, where that is more on the screen, up to six times as much.
     dash : float
-        Lines are dashed: the length of a dash and the gap after it, in the scene; 0 for none.
+        Length of a dash of lines and the gap after it, in the scene; 0 for none.
     form : {"round", "square", "triangle"}
         Of points.
     view : int, optional
-        Which of the scene's views shows it; all of them when left out.
+        The scene's view that shows it; all of them by default.
     overlay : bool
         Drawn over all that is no overlay, as bones are.
     behind : bool
         Gives way where it coincides with another surface.
     closed : bool
-        Whether the surface has an inside, which is not seen: its back need not be drawn.
+        Whether the surface hides its inside: its back need not be drawn.
     edges : bool
         Whether the edges of a surface's triangles are drawn on it.
     hull : bool
-        Only faces that look away are drawn: an outline of what it encloses.
+        Only faces that look away are drawn: an outline of the enclosed parts.
     clipped : bool
         Whether the scene's cut clips it.
     slab : float
-        Keep only what lies less than this far behind the cut; 0 keeps all.
+        Depth behind the cut that is kept; 0 keeps all.
     reading : Reading, optional
         Value shown where the pointer rests on it.
     film : bool
@@ -116,12 +117,12 @@ class Actor:
     """
 
     kind: Literal["surface", "lines", "points"]
-    points: NDArray[np.float32]
-    cells: NDArray[np.int32]
-    normals: NDArray[np.float32] | None = None
+    points: NDArray[Any]
+    cells: NDArray[Any]
+    normals: NDArray[Any] | None = None
     color: Color = BODY
     colors: NDArray[np.uint8] | None = None
-    scalars: NDArray[np.float32] | None = None
+    scalars: NDArray[Any] | None = None
     colormap: str = "weight"
     limits: tuple[float, float] = (0.0, 1.0)
     materials: FaceColors | None = None
@@ -144,6 +145,36 @@ class Actor:
     reading: Reading | None = None
     film: bool = False
 
+    def __post_init__(self) -> None:
+        for name in ("points", "normals", "scalars"):
+            _convert(self, name, np.float32)
+        _convert(self, "cells", np.int32)
+
+    @classmethod
+    def solid(cls, points: NDArray[Any], faces: NDArray[Any], **settings: Any) -> Actor:
+        """Return a surface that no cut clips."""
+        return cls("surface", points, faces, **{"clipped": False, **settings})
+
+    @classmethod
+    def segments(cls, ends: NDArray[Any], **settings: Any) -> Actor:
+        """Return lines between pairs of points, shape (s, 2, 3), that no cut clips."""
+        cells = np.arange(2 * len(ends)).reshape(-1, 2)
+        return cls("lines", ends.reshape(-1, 3), cells, **{"clipped": False, **settings})
+
+    @classmethod
+    def dots(cls, points: NDArray[Any], **settings: Any) -> Actor:
+        """Return points that no cut clips."""
+        cells = np.arange(len(points))[:, None]
+        return cls("points", points, cells, **{"clipped": False, **settings})
+
+    def points_in(
+        self, pose: NDArray[np.float64] | None, blending: Blending = "linear"
+    ) -> NDArray[Any]:
+        """Return the points in a pose of the joints, shape (n, 3); at rest for None."""
+        if pose is None or self.skin is None:
+            return self.points
+        return self.skin.move(self.points, pose, blending)
+
     @classmethod
     def from_polydata(cls, mesh: DataSet, scalars: str | None = None, **settings: Any) -> Actor:
         """Return a PyVista mesh as an actor.
@@ -151,10 +182,10 @@ class Actor:
         Parameters
         ----------
         mesh : pyvista.DataSet
-            Of anything but `pyvista.PolyData` the surface is taken.
+            Its surface, if it is not a `pyvista.PolyData`.
         scalars : str, optional
-            An array of its points or cells: colours if it holds bytes in three or four columns,
-            else values, of vectors their lengths.
+            An array of its points or cells: colours if it has bytes in three or four columns,
+            else values, or vectors for their lengths.
         **settings
             Other parameters of an actor, such as `colormap` or `opacity`.
 
@@ -177,9 +208,9 @@ class Cut:
 
 @dataclass(frozen=True)
 class Legend:
-    """How to read the colours: the title, the map and the numbers at its two ends.
+    """The title, colour map and numbers at its ends that explain the colours.
 
-    Instead of a map, or below it, there may be `swatches`: a colour and its meaning.
+    Instead of a map, or below it, there may be `swatches`: colours and their meanings.
     """
 
     title: str
@@ -197,16 +228,17 @@ class Description(Summarized):
     ----------
     actors : dict of str to Actor
     pose : array, shape (j, 4, 4), float64, optional
-        Where each joint takes the points it holds, in the scene's space; None at rest.
+        Skinning matrices in the scene's space; None at rest.
     cut : Cut, optional
     legend : Legend, optional
     views : tuple of str
-        Captions of the views that stand side by side under one camera; a single view has
-        none.
+        Captions of the views side by side under one camera; a single view has none.
     front : float, optional
         Scalars above it are left grey on the actors that are part of the film.
     images : array, shape (k, s, s, 4), uint8, optional
         Images of the actors' `materials`; see `materials.Textures`.
+    blending : {"linear", "dual"}
+        Of the pose's matrices, or of their dual quaternions.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
@@ -216,6 +248,7 @@ class Description(Summarized):
     views: tuple[str, ...] = ()
     front: float | None = None
     images: NDArray[np.uint8] | None = None
+    blending: Blending = "linear"
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -229,16 +262,22 @@ class Description(Summarized):
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """Lowest and highest corner of all that is to be seen whole, at rest, shape (2, 3).
+        """Lowest and highest corner of all actors at rest but overlays, shape (2, 3).
 
-        That is all but what is drawn over the scene: bones may reach far out of the body, those
-        above all that move nothing.
+        Bones, which are overlays, may reach far out of the body.
         """
         points = [a.points for a in self.actors.values() if len(a.points) and not a.overlay]
         if not points:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)
         return np.stack([low, np.max([p.max(axis=0) for p in points], axis=0)]).astype(float)
+
+
+def _convert(owner: object, name: str, kind: type[np.generic]) -> None:
+    """Set an array of a frozen dataclass to its own type; arrays of that type stay the same."""
+    array = getattr(owner, name)
+    if array is not None:
+        object.__setattr__(owner, name, np.ascontiguousarray(array, kind))
 
 
 def in_view(description: Description, view: int) -> Description:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
 
-from .character import attachments, body, bones
+from .character import character
 from .description import Description, Legend, Reading
 from .palette import TEXELS, UNREACHED, UNREACHED_TEXELS
 from .short_names import short_names
@@ -29,26 +29,17 @@ def distance_scene(
     ----------
     rig : Rig
     distance : array_like, shape (n,)
-        Of every vertex, in unit-cube lengths; inf where nothing was reached.
+        Of every vertex, in unit-cube lengths; inf where no path leads.
     joint : int
-        The joint that it belongs to.
+        The joint of the field.
     weights : array_like, shape (n, j), optional
-        How the body follows the joints.
+        Weights by which the body follows the joints.
     skeleton : bool
-    **look
+    **style
         Other fields of the body's `Actor`.
-
-    Returns
-    -------
-    Description
-        With the actors "body", "bones" and the attachments.
     """
     colors, legend = distance_colors(rig, distance, joint)
-    actors = {
-        "body": body(rig, weights, **colors, **style),
-        **attachments(rig),
-        **bones(rig, joint, skeleton),
-    }
+    actors = character(rig, weights, joint, skeleton, **colors, **style)
     return Description(actors, legend=legend)
 
 
@@ -89,7 +80,7 @@ def distance_limits(distance: ArrayLike) -> tuple[float, float]:
 
 
 def shown_distance(distance: ArrayLike, limits: tuple[float, float]) -> NDArray[np.float32]:
-    """Return distances that a colour map can show: what was not reached is farthest."""
+    """Return distances that a colour map can show: unreached points are farthest."""
     values = np.asarray(distance, float)
     return np.where(np.isfinite(values), values, limits[1]).astype(np.float32)
 

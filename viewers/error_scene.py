@@ -1,53 +1,32 @@
-"""Where two sets of weights put the skin apart: in a pose, or in any turn of a joint."""
+"""The distance between the positions that two sets of weights give to the skin."""
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from cutcell.pose.skin import Blending, Gap, Skin
 from cutcell.rig import Rig
 
-from .character import attachments, body, bones, pose_in_scene, to_scene
+from .character import character, pose_in_scene, to_scene
 from .description import Apart, Description, Legend
-from .skin import skin_of_weights
 
 FLOOR = 3.0
-"""The end of the scale is this many millimetres at least: less would not be visible."""
+"""Least end of the scale in millimetres: less would not be visible."""
 
 WHOLE = 0.995
-"""The scale holds this part of the vertices: a single one would leave all others grey."""
+"""Part of the vertices within the scale: a single one would leave all others grey."""
 
 
-class Gap:
-    """Measures how far apart two sets of weights move each vertex.
+def gap_between(
+    rig: Rig, weights: ArrayLike, reference: ArrayLike, blending: Blending = "linear"
+) -> Gap:
+    """Return the gap between two sets of weights, for poses in the scene's space, in mm.
 
-    Parameters
-    ----------
-    rig : Rig
-    weights, reference : array_like, shape (n, j)
-        Rows sum to one, or to zero where a vertex stands still.
+    The longest side of the character is scaled to 1 m.
     """
-
-    def __init__(self, rig: Rig, weights: ArrayLike, reference: ArrayLike) -> None:
-        self._points = to_scene(rig, rig.mesh.vertices).astype(np.float32)
-        # A vertex without weight follows an additional joint, which never moves.
-        weights_a, weights_b = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
-        self._between = weights_a - weights_b
-        self._unit = millimetres(rig)
-
-    def lengths(self, pose: ArrayLike) -> NDArray[np.float32]:
-        """Return the distances in mm on a character whose longest side is 1 m, shape (n,).
-
-        Parameters
-        ----------
-        pose : array_like, shape (j, 4, 4)
-            In the scene's space.
-        """
-        matrices = np.asarray(pose, np.float32)[:, :3].reshape(-1, 12)
-        matrices = np.vstack([matrices, np.eye(3, 4, dtype=np.float32).ravel()])
-        blended = (self._between @ matrices).reshape(-1, 3, 4)
-        displacement = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
-        return np.asarray(self._unit * np.linalg.norm(displacement, axis=1), np.float32)
+    points = to_scene(rig, rig.mesh.vertices)
+    return Gap(points, weights, reference, millimetres(rig), blending)
 
 
 def error_scene(
@@ -59,7 +38,7 @@ def error_scene(
     chosen: int | None = None,
     skeleton: bool = True,
 ) -> Description:
-    """Return the scene of a posed character, coloured by how far two weightings part.
+    """Return the scene of a posed character, coloured by the distance of two sets of weights.
 
     Parameters
     ----------
@@ -71,21 +50,12 @@ def error_scene(
     chosen : int, optional
         The joint that is highlighted.
     skeleton : bool
-
-    Returns
-    -------
-    Description
-        With the actors "body", "bones" and the attachments.
     """
     pose = pose_in_scene(rig, transforms)
-    limits = error_limits(Gap(rig, weights, reference).lengths(pose))
-    apart = Apart(skin_of_weights(reference), millimetres(rig))
+    limits = error_limits(gap_between(rig, weights, reference).lengths(pose))
+    apart = Apart(Skin.of_weights(reference), millimetres(rig))
     style = error_look(len(rig.mesh.vertices), apart, limits)
-    actors = {
-        "body": body(rig, weights, **style),
-        **attachments(rig),
-        **bones(rig, chosen, skeleton),
-    }
+    actors = character(rig, weights, chosen, skeleton, **style)
     return Description(actors, pose=pose, legend=error_legend(limits))
 
 
@@ -115,7 +85,3 @@ def millimetres(rig: Rig) -> float:
     """Return the mm of a length of 1 in the scene, where the longest side is 1 m."""
     used = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
     return 1000 / float(np.ptp(used, axis=0).max())
-
-
-def _with_rest(weights: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.hstack([weights, (weights.sum(axis=1, keepdims=True) <= 0).astype(np.float32)])

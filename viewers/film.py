@@ -20,10 +20,8 @@ from cutcell.runtime.writing import check_place, write_all
 
 from .camera import PAGE_HEIGHT, Camera, around, sees
 from .description import Description
-from .gif import write_gif
-from .mp4 import find_ffmpeg, write_mp4
+from .encoders import find_ffmpeg, write_gif, write_mp4
 from .palette import THEMES, Theme
-from .skin import moved
 
 if TYPE_CHECKING:
     from .studio import Studio
@@ -35,7 +33,7 @@ FIGURES = (".pdf", ".svg", ".png")
 MAX_PANELS = 6
 TURN_SECONDS = 6.0
 LONGEST = 20.0
-"""Seconds of a motion that are filmed at most."""
+"""Longest film of a motion, in seconds."""
 PROBED = 24
 """Largest number of poses that are sampled to frame a motion."""
 FRAMES = {".mp4": 30, ".gif": 20}
@@ -44,7 +42,7 @@ FRAMES = {".mp4": 30, ".gif": 20}
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """The request: a picture, or a film where it turns or moves.
+    """A request for a picture, or for a film where it turns or moves.
 
     Parameters
     ----------
@@ -53,25 +51,25 @@ class Order:
     size : (int, int)
         Width and height in pixels.
     camera : Camera, optional
-        One that sees the whole character shall see its whole motion, too, and steps back for that.
+        If it sees the whole character, it steps back to see the whole motion.
     direction : tuple of float, optional
-        Where to look from, where no camera is given.
+        Direction of the view, where no camera is given.
     turntable : bool
-        Whether the camera goes once around.
+        Whether the camera circles the character once.
     motion : Clip, optional
         In the scene's space; see `pose_scene.clip_in_scene`.
     legend : bool
     page_height : float
-        How high a page's canvas is that looks the same, in its pixels: widths of lines follow.
+        Height of a page's canvas that looks the same, in its pixels: widths of lines follow.
     background : str
-        A colour instead of the theme's ground, as style sheets write it; or "transparent", in PNG.
+        A colour of CSS instead of the theme's background; or "transparent", in PNG.
     scenes : tuple of Description
         The frames of a film, instead of a motion. The camera and the legend's place are those of
         `description`.
     panels : tuple of Description
         A figure of these instead, each a picture of `size`; each view is a panel.
     captions : tuple of str
-        Of all panels; by default what differs between their legends.
+        Of all panels; by default the titles of legends that differ.
     """
 
     description: Description
@@ -101,7 +99,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     ----------
     order : Order
     path : str or Path
-        Its ending says what it becomes: .png or .jpg, or .mp4 or .gif for a film, or .pdf, .svg
+        Its ending selects the format: .png or .jpg, or .mp4 or .gif for a film, or .pdf, .svg
         or .png for a figure.
     progress : callable
         See `cutcell.runtime.progress`; may raise to stop.
@@ -109,8 +107,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     Raises
     ------
     FileError
-        Another ending, a film that does not move, a folder that is not there, or a file that
-        cannot be written.
+        Another ending, a film without motion, a missing folder, or a file that cannot be written.
     MissingLibraryError
         MP4 without ffmpeg.
     """
@@ -140,7 +137,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
 
 
 def ground(name: str, background: str, kind: str = ".png") -> tuple[Theme, bool]:
-    """Return a theme with a ground of one colour, and whether there is none.
+    """Return a theme with a background of one colour, and whether there is none.
 
     Raises
     ------
@@ -163,12 +160,12 @@ def ground(name: str, background: str, kind: str = ".png") -> tuple[Theme, bool]
 
 
 def check_picture_file(path: Path, moves: bool = False, panels: int = 0) -> str:
-    """Return the ending of a picture's, film's or figure's name, in small letters.
+    """Return the ending of the name of a picture, film or figure, in small letters.
 
     Raises
     ------
     FileError
-        It is none that can be drawn, or does not fit what is drawn, or has no folder.
+        An ending that cannot be drawn or does not fit, or a missing folder.
     ParameterError
         A figure has too many panels, or moves.
     MissingLibraryError
@@ -181,14 +178,10 @@ def check_picture_file(path: Path, moves: bool = False, panels: int = 0) -> str:
         raise ParameterError("a figure of panels does not move: leave out what makes a film")
     fitting = FILMS if moves else FIGURES if panels else (*PICTURES, *FIGURES[:2])
     if kind not in fitting:
-        other = kind in (*PICTURES, *FILMS, *FIGURES)
-        what = "what moves is stored" if moves else "what stands still is stored"
-        what = "a figure of panels is stored" if panels else what
-        raise FileError(
-            f"{path.name}: {'' if other else f'a picture cannot be saved as {kind!r}; '}"
-            f"{what} as {' or '.join(fitting)}"
-            + ("; ask for a turntable, a clip or a sweep" if kind in FILMS and not panels else "")
-        )
+        what = "films" if moves else "figures of panels" if panels else "pictures"
+        wrong = f", not as {kind}" if kind else ""
+        advice = "; ask for a turntable, a clip or a sweep" if kind in FILMS and not panels else ""
+        raise FileError(f"{path.name}: {what} are saved as {' or '.join(fitting)}{wrong}{advice}")
     if kind == ".mp4":
         find_ffmpeg()
     check_place(path)
@@ -214,13 +207,13 @@ def _frames(
 
 
 def _camera(order: Order, studio: Studio) -> Camera:
-    """Return where the order is looked at from, at first."""
+    """Return the first camera of an order."""
     camera, pose = order.camera, order.description.pose
     if camera is None:
         return studio.camera(order.direction, box_of(order.description, _poses(order)))
     if order.motion is None:
         return camera
-    # Who looks closely at a part of the character means that part.
+    # A close view of a part of the character stays on that part.
     if not sees(camera, _points(order.description, [pose]), studio.shape):
         return camera
     if sees(camera, _points(order.description, _poses(order)), studio.shape):
@@ -230,7 +223,7 @@ def _camera(order: Order, studio: Studio) -> Camera:
 
 
 def _poses(order: Order) -> list[Any]:
-    """Return the poses that are seen, or some of them; None for rest."""
+    """Return the poses of an order, or some of them; None for rest."""
     if order.motion is None:
         return [order.description.pose]
     probed = min(len(order.motion.times), PROBED)
@@ -238,19 +231,14 @@ def _poses(order: Order) -> list[Any]:
 
 
 def _points(description: Description, poses: list[Any]) -> NDArray[np.float64]:
-    """Return where the points of all that is to be seen whole are in some poses, shape (n, 3)."""
-    reached: list[NDArray[np.float64]] = [np.empty((0, 3))]
-    for actor in description.actors.values():
-        if len(actor.points) and not actor.overlay:
-            skin, rest = actor.skin, np.asarray(actor.points, float)
-            reached += [
-                rest if skin is None or pose is None else moved(rest, skin, pose) for pose in poses
-            ]
-    return np.concatenate(reached)
+    """Return the points of all actors but overlays in some poses, shape (n, 3)."""
+    whole = [actor for actor in description.actors.values() if not actor.overlay]
+    points = [a.points_in(pose, description.blending) for a in whole for pose in poses]
+    return np.concatenate([np.empty((0, 3)), *points])
 
 
 def box_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
-    """Return the lowest and highest corner that some poses come to, shape (2, 3)."""
+    """Return the lowest and highest corner of some poses, shape (2, 3)."""
     points = _points(description, poses)
     if not len(points):
         return description.bounds

@@ -5,14 +5,14 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import Finding
 from cutcell.pose import rotate_joint
+from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 
 from .camera import FRONT, Camera, framing
-from .character import pose_in_scene, to_scene
+from .character import diagonal, pose_in_scene, to_scene
 from .description import Actor, Description
 from .marks import beads
 from .palette import MARK
-from .skin import Skin, moved, rigid_skin, skin_of_weights
 
 MAX_BEADS = 4000
 """Largest number of marked vertices; of more, evenly spaced ones are marked."""
@@ -23,48 +23,34 @@ NEAREST = 0.2
 
 
 def finding_marks(rig: Rig, finding: Finding) -> dict[str, Actor]:
-    """Return marks of what a finding names, drawn over the body.
+    """Return marks of the faces, vertices and joints that a finding names.
 
-    Faces, and those of which it names all corners, are painted; other vertices and joints get
-    beads. They follow the joints by the file's weights, which such findings are about.
+    Faces, and those with all corners named, are painted; other vertices and joints get beads.
+    They follow the joints by the file's weights, which such findings are about.
     """
     actors = {}
     faces, vertices = _painted(rig, finding)
     if len(faces):
         corners = rig.mesh.faces[faces]
-        points = to_scene(rig, rig.mesh.vertices[corners.ravel()]).astype(np.float32)
-        cells = np.arange(corners.size, dtype=np.int32).reshape(-1, 3)
+        points = to_scene(rig, rig.mesh.vertices[corners.ravel()])
+        cells = np.arange(corners.size).reshape(-1, 3)
         skin = _skin_of_vertices(rig, corners.ravel())
-        actors["finding faces"] = Actor(
-            "surface", points, cells, color=MARK, clipped=False, skin=skin
-        )
-    size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
+        actors["finding faces"] = Actor.solid(points, cells, color=MARK, skin=skin)
     vertices = vertices[:: -(-len(vertices) // MAX_BEADS) or 1]
+    joints = rig.skeleton.joints[finding.joints]
     for name, places, radius, skin in (
         ("finding vertices", rig.mesh.vertices[vertices], VERTEX, _skin_of_vertices(rig, vertices)),
-        (
-            "finding joints",
-            rig.skeleton.joints[finding.joints],
-            JOINT,
-            rigid_skin(finding.joints),
-        ),
+        ("finding joints", joints, JOINT, Skin.rigid(finding.joints)),
     ):
         if len(places):
-            points, cells = beads(to_scene(rig, places), radius * size)
-            actors[name] = Actor(
-                "surface",
-                points.astype(np.float32),
-                cells,
-                color=MARK,
-                clipped=False,
-                overlay=True,
-                skin=skin and _repeated(skin, len(points) // len(places)),
-            )
+            points, cells = beads(to_scene(rig, places), radius * diagonal(rig))
+            skin = skin and skin.subset(np.arange(len(points)) * len(places) // len(points))
+            actors[name] = Actor.solid(points, cells, color=MARK, overlay=True, skin=skin)
     return actors
 
 
 def finding_pose(rig: Rig, finding: Finding) -> NDArray[np.float64] | None:
-    """Return the pose in which a finding is seen, in the scene, (j, 4, 4); None if at rest."""
+    """Return the pose that shows a finding, in the scene, (j, 4, 4); None for rest."""
     if finding.pose is None or rig.weights is None:
         return None
     pose = finding.pose
@@ -72,15 +58,11 @@ def finding_pose(rig: Rig, finding: Finding) -> NDArray[np.float64] | None:
 
 
 def _skin_of_vertices(rig: Rig, vertices: NDArray[np.integer]) -> Skin | None:
-    return None if rig.weights is None else skin_of_weights(rig.weights[vertices])
-
-
-def _repeated(skin: Skin, times: int) -> Skin:
-    return Skin(np.repeat(skin.joints, times, axis=0), np.repeat(skin.weights, times, axis=0))
+    return None if rig.weights is None else Skin.of_weights(rig.weights[vertices])
 
 
 def _painted(rig: Rig, finding: Finding) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the faces to be painted, and the vertices that are not on any of them."""
+    """Return the painted faces, and the named vertices that are not on any of them."""
     named = np.zeros(len(rig.mesh.vertices), bool)
     named[finding.vertices] = True
     faces = np.union1d(finding.faces, np.flatnonzero(named[rig.mesh.faces].all(axis=1)))
@@ -91,7 +73,7 @@ def _painted(rig: Rig, finding: Finding) -> tuple[NDArray[np.intp], NDArray[np.i
 def camera_on(
     rig: Rig, finding: Finding, bounds: NDArray[np.float64], aspect: float = 1.2
 ) -> Camera | None:
-    """Return a camera that sees what a finding names; None if it names nothing.
+    """Return a camera that sees all that a finding names; None if it names nothing.
 
     Parameters
     ----------
@@ -112,7 +94,7 @@ def camera_on(
     if pose is not None and rig.weights is not None:
         of = np.concatenate([finding.vertices, rig.mesh.faces[finding.faces].ravel()])
         weights = np.concatenate([rig.weights[of], np.eye(len(joints))[finding.joints]])
-        points = moved(points, skin_of_weights(weights), pose)
+        points = Skin.of_weights(weights).move(points, pose)
     return _towards(points, bounds, aspect)
 
 
@@ -121,24 +103,12 @@ def camera_on_marks(
     aspect: float,
     direction: tuple[float, float, float] | None = None,
 ) -> Camera | None:
-    """Return a camera that sees the marks of a scene; None where there are none.
+    """Return a camera that sees the marks of a scene; None if there are none.
 
-    Parameters
-    ----------
-    description : Description
-    aspect : float
-        Width over height of the picture.
-    direction : tuple of float, optional
-        Where to look from; the side that the marks are on when left out.
+    The direction is by default from the side of the marks.
     """
     marks = [actor for name, actor in description.actors.items() if name.startswith("finding")]
-    pose = description.pose
-    points = [
-        actor.points
-        if pose is None or actor.skin is None
-        else moved(actor.points, actor.skin, pose)
-        for actor in marks
-    ]
+    points = [actor.points_in(description.pose, description.blending) for actor in marks]
     if not points:
         return None
     return _towards(np.concatenate(points), description.bounds, aspect, direction)
@@ -156,7 +126,7 @@ def _towards(
     middle = bounds.mean(axis=0)
     side = (low + high) / 2 - middle
     if direction is None:
-        # From the side that they are on, and still from the front, and never straight from above.
+        # From their side, and still from the front, and never straight from above.
         towards = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
         direction = tuple(towards.tolist())
     return framing(np.stack([low - more, high + more]), aspect, direction)

@@ -1,6 +1,6 @@
 """A cut-cell graph in the paper's colours: mesh blue, interior orange, surface green."""
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -54,18 +54,18 @@ def graph_scene(
     Parameters
     ----------
     rig : Rig
-        What the graph was built from; says which way is up.
+        The rig that the graph was built from.
     graph : CutCellGraph
     layers : tuple of str
-        Which of `LAYERS` are seen.
+        The visible ones of `LAYERS`.
     field : array_like, shape (N,), optional
         A distance at every node: edges are then coloured by it.
     kinds : tuple of int
-        The kinds of edges that are.
+        The kinds of edges that are coloured by it.
     shades : str
-        The colour map that it is shown with.
+        The colour map of the field.
     colors : array_like, shape (N, 3), uint8, optional
-        A colour for every node: edges are then coloured by it, whatever their kind.
+        A colour for every node: edges of all kinds are then coloured by it.
     cut : Cut, optional
         Clips the near side, so that the interior is visible.
     slab : float
@@ -94,7 +94,7 @@ def graph_scene(
         actors[name] = Actor(
             "lines",
             nodes[used],
-            cells.reshape(-1, 2).astype(np.int32),
+            cells.reshape(-1, 2),
             color=color,
             colors=None if point_colors is None else point_colors[used],
             scalars=scalars,
@@ -108,16 +108,15 @@ def graph_scene(
         )
     for (name, kind), color in zip(NODES.items(), theme.edges, strict=True):
         which = np.flatnonzero((graph.node_kind == kind) & graph.connected)
-        actors[name] = Actor(
-            "points",
+        actors[name] = Actor.dots(
             nodes[which],
-            np.arange(len(which), dtype=np.int32)[:, None],
+            clipped=True,
             color=color,
             colors=None if point_colors is None else point_colors[which],
             width=NODE_WIDTH,
             thick=NODE_THICK[kind] * (spacing[kind] if kind == MESH else cell),
             form=FORMS[kind],
-            reading=Reading(f"{KINDS[kind]} node ", which.astype(np.float32)),
+            reading=Reading(f"{KINDS[kind]} node ", which),
             visible=False,
         )
     return Description(actors, cut=cut)
@@ -142,14 +141,9 @@ def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
 
 
 def component_colors(graph: CutCellGraph) -> tuple[NDArray[np.uint8], int]:
-    """Return a colour for each node, by the connected component it is in, and their number.
+    """Return a colour (N, 3) for each node by its connected component, and their number.
 
-    The largest have distinct colours; there are more components than colours.
-
-    Returns
-    -------
-    colors : array, shape (N, 3), uint8
-    count : int
+    The largest components have distinct colours.
     """
     count, label = connected_components(graph.csr(), directed=False)
     rank = np.empty(count, int)
@@ -163,28 +157,23 @@ def node_marks(rig: Rig, graph: CutCellGraph, node: int, theme: palette.Theme) -
     """Return the mark of a node, the edges that lead from it, and the nodes they lead to."""
     indptr, indices, _ = graph.adjacency
     ring = np.asarray(indices[indptr[node] : indptr[node + 1]])
-    points = to_scene(rig, graph.lattice.to_file(graph.nodes[[node, *ring]])).astype(np.float32)
-    cell = to_scene_length(rig, graph)
-    ends = np.arange(1, len(points), dtype=np.int32)
-    common: dict[str, Any] = {"overlay": True, "clipped": False}
+    points = to_scene(rig, graph.lattice.to_file(graph.nodes[[node, *ring]]))
+    cell, ink = to_scene_length(rig, graph), theme.ink
+    ends = np.stack([np.broadcast_to(points[:1], points[1:].shape), points[1:]], axis=1)
+    reading = Reading("node ", ring)
     return {
-        "node ring": Actor(
-            "lines", points, np.stack([0 * ends, ends], axis=1), color=theme.ink, width=2.5,
-            thick=0.03 * cell, **common,
+        "node ring": Actor.segments(ends, color=ink, width=2.5, thick=0.03 * cell, overlay=True),
+        "node neighbours": Actor.dots(
+            points[1:], color=ink, width=7, thick=0.1 * cell, reading=reading, overlay=True
         ),
-        "node neighbours": Actor(
-            "points", points, ends[:, None], color=theme.ink, width=7, thick=0.1 * cell,
-            reading=Reading("node ", np.array([node, *ring], np.float32)), **common,
+        "node": Actor.dots(
+            points[:1], color=palette.MARK, width=12, thick=0.12 * cell, overlay=True
         ),
-        "node": Actor(
-            "points", points[:1], np.zeros((1, 1), np.int32), color=palette.MARK, width=12,
-            thick=0.12 * cell, **common,
-        ),
-    }  # fmt: skip
+    }
 
 
 def depth_field(graph: CutCellGraph) -> NDArray[np.float64]:
-    """Return how far each node lies below the surface, shape (N,), in unit-cube lengths."""
+    """Return the depth of each node below the surface, shape (N,), in unit-cube lengths."""
     inner = graph.node_kind == INTERIOR
     depth = np.zeros(len(graph.nodes))
     if inner.any():
@@ -199,8 +188,7 @@ def cut_at(bounds: NDArray[np.float64], axis: str | ArrayLike, position: float) 
     ----------
     bounds : array, shape (2, 3)
     axis : {"x", "y", "z"} or array_like, shape (3,)
-        What the plane is perpendicular to, or a direction of length 1; the larger side is taken
-        away.
+        The plane's normal, whose side is cut away.
     position : float
         From 0, the lower end of the box, to 1, the upper.
     """
@@ -213,6 +201,6 @@ def cut_at(bounds: NDArray[np.float64], axis: str | ArrayLike, position: float) 
 def box_across(
     bounds: NDArray[np.float64], normal: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """Return the middle of a box, and how far it reaches from there along a direction."""
+    """Return the middle of a box, and its half extent along a direction."""
     low, high = np.asarray(bounds, float)
     return (low + high) / 2, float(np.abs(normal) @ (high - low)) / 2

@@ -16,14 +16,14 @@ from .tiles import Tile
 
 CARD = {"light": (255, 255, 255, 216), "dark": (24, 28, 36, 216)}
 MOST = 200
-"""Letters of what is written; far fewer are seen."""
+"""Largest number of letters of a text; far fewer fit."""
 SMALLER = 1.4
-"""How many times smaller captions may become to fit."""
+"""Largest factor by which captions are shrunk to fit."""
 LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
 
 
 def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Image:
-    """Return a legend as a card for a picture of some width and height, whose sizes it follows."""
+    """Return a legend as a card whose sizes follow those of a picture."""
     unit = _unit(size)
     title, ends = _font(1.25 * unit), _font(1.1 * unit)
     pad, bar = round(1.1 * unit), round(0.75 * unit)
@@ -31,8 +31,8 @@ def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Im
     indent = 2 * bar + round(0.6 * unit)
     swatches = [(color, printable(text, MOST)) for color, text in legend.swatches]
     least = max([least, *(indent + ends.getlength(text) for _, text in swatches)])
-    wanted = max(18 * unit, title.getlength(printable(legend.title, MOST)), least)
-    width = ceil(min(wanted, size[0] - 4 * pad))
+    needed = max(18 * unit, title.getlength(printable(legend.title, MOST)), least)
+    width = ceil(min(needed, size[0] - 4 * pad))
     name = _shortened(printable(legend.title, MOST), title, width)
     scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
     row = _height(ends) + round(0.4 * unit)
@@ -63,13 +63,9 @@ def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Im
 
 
 def free_corner(covered: NDArray[np.bool_], card: Image.Image) -> tuple[int, int] | None:
-    """Return where a card covers nothing, in a corner of a picture; None where it always does.
+    """Return the corner of a picture in which a card covers nothing; None if there is none.
 
-    Parameters
-    ----------
-    covered : array, shape (height, width), bool
-        Where something is seen.
-    card : Image
+    `covered`, shape (height, width), marks the pixels that show something.
     """
     height, width = covered.shape
     gap = round(1.1 * _unit((width, height)))
@@ -96,7 +92,7 @@ def write_captions(
 ) -> NDArray[np.uint8]:
     """Write each view's caption at its upper edge, and draw a line between the views.
 
-    Captions that are too wide for their views are written smaller, all alike, or else shortened.
+    If captions are too wide for their views, all are written smaller, or else shortened.
     """
     unit = _unit(picture.shape[1::-1])
     font, pad = _font(1.25 * unit), round(0.7 * unit)
@@ -104,7 +100,8 @@ def write_captions(
     room = max(min(width for _, _, width, _ in places) - 7 * pad, 1)
     longest = max(map(font.getlength, names))
     font = _font(1.25 * unit / min(max(longest / room, 1), SMALLER))
-    image, draw = _open(picture)
+    image = Image.fromarray(np.ascontiguousarray(picture))
+    draw = ImageDraw.Draw(image, "RGBA")
     for text, (left, top, width, height) in zip(names, places, strict=True):
         if left:
             draw.line((left, top, left, top + height), fill=LINE[theme.name], width=1)
@@ -117,11 +114,6 @@ def write_captions(
         draw.rounded_rectangle(box, pad, fill=CARD[theme.name])
         draw.text((middle, upper + 0.8 * pad), name, font=font, fill=_ink(theme.ink), anchor="ma")
     return np.asarray(image)
-
-
-def _open(picture: NDArray[np.uint8]) -> tuple[Image.Image, ImageDraw.ImageDraw]:
-    image = Image.fromarray(np.ascontiguousarray(picture))
-    return image, ImageDraw.Draw(image, "RGBA")
 
 
 def _unit(size: tuple[int, ...]) -> float:

@@ -1,21 +1,23 @@
 """Marks on a character: a ball at a vertex, a tube along a path."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 
-from .character import across, smooth_normals, to_scene
+from .character import OCTAHEDRON, bone_frames, diagonal, smooth_normals, to_scene
 from .description import Actor
 from .palette import MARK
-from .skin import Skin, skin_of_weights
 
 DOT = 4.0
-"""How wide the marks of many vertices are, in pixels of the screen."""
+"""Width of the marks of many vertices, in pixels of the screen."""
 LIFT = 0.0008
 """Distance of the marks from the surface, relative to the diagonal of the character's box."""
 BALL = 13.0
-"""How wide a vertex's mark is, in pixels of the screen."""
+"""Width of a vertex's mark, in pixels of the screen."""
 TUBE = 0.0035
 """A radius, in parts of the diagonal of the character's box."""
 
@@ -27,17 +29,9 @@ def vertex_mark(rig: Rig, vertex: int, weights: ArrayLike | None = None) -> Acto
     """
     skin = None
     if weights is not None:
-        skin = skin_of_weights(np.asarray(weights, float)[[vertex]])
-    return Actor(
-        "points",
-        to_scene(rig, rig.mesh.vertices[[vertex]]).astype(np.float32),
-        np.zeros((1, 1), np.int32),
-        color=MARK,
-        width=BALL,
-        skin=skin,
-        overlay=True,
-        clipped=False,
-    )
+        skin = Skin.of_weights(np.asarray(weights, float)[[vertex]])
+    place = to_scene(rig, rig.mesh.vertices[[vertex]])
+    return Actor.dots(place, color=MARK, width=BALL, skin=skin, overlay=True)
 
 
 def vertex_dots(body: Actor, vertices: ArrayLike) -> Actor:
@@ -45,114 +39,112 @@ def vertex_dots(body: Actor, vertices: ArrayLike) -> Actor:
     chosen = np.asarray(vertices)
     assert body.normals is not None
     size = np.linalg.norm(np.ptp(body.points, axis=0))
-    skin = None
-    if body.skin is not None:
-        skin = Skin(body.skin.joints[chosen], body.skin.weights[chosen])
-    return Actor(
-        "points",
-        (body.points[chosen] + LIFT * size * body.normals[chosen]).astype(np.float32),
-        np.arange(len(chosen), dtype=np.int32)[:, None],
-        color=MARK,
-        width=DOT,
-        skin=skin,
-        clipped=False,
-    )
+    skin = body.skin and body.skin.subset(chosen)
+    places = body.points[chosen] + LIFT * size * body.normals[chosen]
+    return Actor.dots(places, color=MARK, width=DOT, skin=skin)
+
+
+def outline(
+    body: Actor, welded: NDArray[np.integer], inside: NDArray[np.bool_], **style: Any
+) -> Actor:
+    """Return lines around the triangles of a body that have vertices inside.
+
+    They move with the body. Where the mesh ends there is no line.
+
+    Parameters
+    ----------
+    body : Actor
+    welded : array, shape (n,)
+        The welded vertex of each vertex: copies at a seam are one.
+    inside : array, shape (n,), bool
+    **style
+        Other fields of the lines' `Actor`.
+    """
+    assert body.normals is not None
+    at_place = np.zeros(int(welded.max()) + 1, np.bool_)
+    at_place[welded[inside]] = True
+    corners = at_place[welded[body.cells]]
+    near = np.zeros_like(at_place)
+    near[welded[body.cells[corners.any(axis=1) & ~corners.all(axis=1)]]] = True
+    # Only triangles beside the border: sorting the edges of all takes long.
+    is_near = near[welded[body.cells]].sum(axis=1) >= 2
+    ends = np.stack([body.cells, np.roll(body.cells, -1, axis=1)], axis=2)[is_near].reshape(-1, 2)
+    low, high = np.sort(welded[ends], axis=1).T
+    code = low.astype(np.int64) * len(at_place) + high
+    _, first, edge = np.unique(code, return_index=True, return_inverse=True)
+    is_inside = np.repeat(corners[is_near].any(axis=1), 3)
+    of_inside, of_outside = (np.bincount(edge, flags) > 0 for flags in (is_inside, ~is_inside))
+    around = ends[first[of_inside & of_outside]].ravel()
+    size = np.linalg.norm(np.ptp(body.points, axis=0))
+    lifted = body.points[around] + LIFT * size * body.normals[around]
+    skin = body.skin and body.skin.subset(around)
+    return Actor.segments(lifted.reshape(-1, 2, 3), skin=skin, **style)
 
 
 def path_tube(rig: Rig, path: ArrayLike) -> Actor:
     """Return a tube along a path (p, 3) in the scene's space."""
-    points, faces = tube(np.asarray(path, float), TUBE * _size(rig))
-    return Actor(
-        "surface",
-        points.astype(np.float32),
-        faces,
-        normals=smooth_normals(points, faces).astype(np.float32),
-        color=MARK,
-        clipped=False,
-    )
+    points, faces = tube(np.asarray(path, float), TUBE * diagonal(rig))
+    return Actor.solid(points, faces, normals=smooth_normals(points, faces), color=MARK)
 
 
 def tube(path: NDArray[np.float64], radius: float, sides: int = 10) -> tuple[NDArray, NDArray]:
-    """Return the points and triangles of one open tube a piece of a path, with balls between."""
+    """Return the points and triangles of open tubes along a path, with balls at its points."""
     ball, ball_faces = _ball()
-    points = [path[:, None] + radius * ball]
-    faces = [np.arange(len(path))[:, None, None] * len(ball) + ball_faces]
-    start, along = path[:-1], np.diff(path, axis=0)
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
-    side, other = across(along)
-    angle = 2 * np.pi * np.arange(sides) / sides
-    ring = np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * other[:, None]
-    rings = np.stack([start[:, None] + radius * ring, path[1:, None] + radius * ring], axis=1)
-    points.append(rings.reshape(len(start), -1, 3))
-    k = np.arange(sides)
-    after = (k + 1) % sides
-    strip = np.stack([k, after, k + sides, after, after + sides, k + sides], axis=1)
-    first = len(path) * len(ball)
-    offset = first + np.arange(len(start)) * 2 * sides
-    faces.append(offset[:, None, None] + strip.reshape(-1, 3))
-    return (
-        np.concatenate([p.reshape(-1, 3) for p in points]),
-        np.concatenate([f.reshape(-1, 3) for f in faces]).astype(np.int32),
-    )
+    balls = path[:, None] + radius * ball
+    _, _, side, other = bone_frames(path[:-1], path[1:])
+    angle = 2 * np.pi * np.arange(sides)[:, None] / sides
+    ring = np.cos(angle) * side[:, None] + np.sin(angle) * other[:, None]
+    tubes, tube_faces = _prisms(path[:-1], path[1:], radius * ring)
+    between = np.arange(len(path))[:, None, None] * len(ball) + ball_faces
+    faces = np.concatenate([between.reshape(-1, 3), balls.shape[0] * len(ball) + tube_faces])
+    return np.concatenate([balls.reshape(-1, 3), tubes]), faces
 
 
 def rods(
     start: NDArray[np.float64], end: NDArray[np.float64], thickness: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.intp]]:
-    """Return one square rod a piece (s, 3): points, triangles, and the piece of each point."""
-    along = end - start
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
-    side, other = across(along)
+) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.intp]]:
+    """Return square rods along segments: points, triangles, and the segment of each point."""
+    _, _, side, other = bone_frames(start, end)
     half = np.broadcast_to(thickness, len(start))[:, None] / 2
     ring = [half * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-    points = np.stack([*(start + r for r in ring), *(end + r for r in ring)], axis=1)
-    k = np.arange(4)
-    after = (k + 1) % 4
-    sides = np.stack([k, after, k + 4, after, after + 4, k + 4], axis=1).reshape(-1, 3)
-    faces = 8 * np.arange(len(start))[:, None, None] + sides
-    of = np.repeat(np.arange(len(start)), 8)
-    return points.reshape(-1, 3), faces.reshape(-1, 3).astype(np.int32), of
+    return *_prisms(start, end, np.stack(ring, axis=1)), np.repeat(np.arange(len(start)), 8)
 
 
 def beads(centres: NDArray[np.float64], radius: float) -> tuple[NDArray, NDArray]:
     """Return the points and triangles of an octahedron at each centre (c, 3)."""
-    points = centres[:, None] + radius * _OCTAHEDRON
-    faces = 6 * np.arange(len(centres))[:, None, None] + _OCTAHEDRON_FACES
-    return points.reshape(-1, 3), faces.reshape(-1, 3).astype(np.int32)
+    x, y, z = np.eye(3)
+    points = centres[:, None] + radius * np.stack([-z, x, y, -x, -y, z])
+    faces = 6 * np.arange(len(centres))[:, None, None] + OCTAHEDRON
+    return points.reshape(-1, 3), faces.reshape(-1, 3)
 
 
-_OCTAHEDRON = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1.0]])
-_OCTAHEDRON_FACES = np.array(
-    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
-)
+def _prisms(
+    start: NDArray[np.float64], end: NDArray[np.float64], ring: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Return open prisms along segments (s, 3), with rings at offsets (s, k, 3) from both ends."""
+    points = np.concatenate([start[:, None] + ring, end[:, None] + ring], axis=1)
+    count = ring.shape[1]
+    k = np.arange(count)
+    after = (k + 1) % count
+    sides = np.stack([k, after, k + count, after, after + count, k + count], axis=1)
+    faces = 2 * count * np.arange(len(start))[:, None, None] + sides.reshape(-1, 3)
+    return points.reshape(-1, 3), faces.reshape(-1, 3)
 
 
 def _ball(rows: int = 7, columns: int = 12) -> tuple[NDArray, NDArray]:
     """Return the points and triangles of a ball of radius 1."""
-    up = np.pi * np.arange(1, rows) / rows
+    up = np.pi * np.arange(1, rows)[:, None] / rows
     around = 2 * np.pi * np.arange(columns) / columns
-    inner = np.stack(
-        [
-            np.outer(np.sin(up), np.cos(around)),
-            np.outer(np.cos(up), np.ones(columns)),
-            np.outer(np.sin(up), np.sin(around)),
-        ],
-        axis=2,
-    ).reshape(-1, 3)
+    x, z = np.sin(up) * np.cos(around), np.sin(up) * np.sin(around)
+    inner = np.stack([x, np.broadcast_to(np.cos(up), x.shape), z], axis=2).reshape(-1, 3)
     points = np.concatenate([inner, [[0, 1, 0], [0, -1, 0]]])
-    k = np.arange(columns)
-    after = (k + 1) % columns
-    faces = [np.stack([k, np.full(columns, len(inner)), after], axis=1)]
-    last = (rows - 2) * columns
-    faces.append(np.stack([last + k, last + after, np.full(columns, len(inner) + 1)], axis=1))
-    for row in range(rows - 2):
-        a, b = row * columns, (row + 1) * columns
-        faces.append(np.stack([a + k, a + after, b + k], axis=1))
-        faces.append(np.stack([a + after, b + after, b + k], axis=1))
-    return points, np.concatenate(faces).astype(np.int32)
-
-
-def _size(rig: Rig) -> float:
-    return float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
+    ring = np.arange(len(inner)).reshape(x.shape)
+    after = np.roll(ring, -1, axis=1)
+    faces = [
+        (ring[0], len(inner), after[0]),
+        (ring[-1], after[-1], len(inner) + 1),
+        (ring[:-1], after[:-1], ring[1:]),
+        (after[:-1], after[1:], ring[1:]),
+    ]
+    corners = [np.stack(np.broadcast_arrays(*three), axis=-1).reshape(-1, 3) for three in faces]
+    return points, np.concatenate(corners)

@@ -1,4 +1,4 @@
-"""The images of a file's materials, all of one size: what a graphics card takes as layers."""
+"""The images of a file's materials as layers of one size, for a graphics card."""
 
 import warnings
 from collections.abc import Sequence
@@ -27,18 +27,18 @@ HALF = 128
 
 @dataclass(frozen=True, eq=False)
 class Textures:
-    """A rig's materials, decoded: its images, and what of them each face shows.
+    """A rig's decoded materials: its images, and their parts on each face.
 
     Parameters
     ----------
     images : array, shape (k, s, s, 4), uint8
-        The layers, sRGB. Nothing is there where alpha is less than a half; where a surface is
-        blended, alpha is how much of it is there.
+        The layers, sRGB. Pixels with alpha below a half are left out; where a surface is
+        blended, alpha is its opacity.
     body : FaceColors
         In the order of the faces of the body's `Actor`.
     attachments : tuple of FaceColors
     notes : tuple of str
-        What could not be read, in sentences.
+        Messages about images that could not be read.
     """
 
     images: NDArray[np.uint8]
@@ -86,23 +86,16 @@ def decoded(
 
 
 def none_decoded(layers: Sequence[Layer], why: str) -> tuple[NDArray[np.uint8], dict[int, str]]:
-    """Return what `decoded` does where no image can be shown."""
+    """Return the result of `decoded` where no image can be shown."""
     return np.zeros((0, 1, 1, 4), np.uint8), dict.fromkeys(range(len(layers)), why)
 
 
 def as_textures(
     rig: Rig, materials: Materials, images: NDArray[np.uint8], problems: dict[int, str]
 ) -> Textures:
-    """Return what shows a rig in its file's materials.
+    """Return a rig's textures from its materials and what `decoded` returns.
 
-    Parameters
-    ----------
-    rig : Rig
-    materials : Materials
-        Of this rig.
-    images : array, shape (k, s, s, 4), uint8
-    problems : dict of int to str
-        From `decoded`. Where a layer cannot be shown its material's colour is.
+    Layers that cannot be shown are replaced by their materials' colours.
     """
     notes = {
         f"{materials.images[materials.layers[k].image].name} cannot be shown: {problem}": None
@@ -137,7 +130,7 @@ def as_textures(
 
 
 def _opened(image: StoredImage) -> tuple[int, int] | str:
-    """Return the size of an image, of which the head alone is read; else what is wrong with it."""
+    """Return the size of an image from its header, or the problem with it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
@@ -154,7 +147,7 @@ _TOO_LARGE = "it has more than 67 million pixels"
 
 
 def _side(opened: Sequence[tuple[int, int] | str], layers: int) -> int:
-    """Return the side of all layers: no more than the largest needs, and all of them may take."""
+    """Return the side of all layers, by the largest image and the memory of all."""
     largest = max((max(one) for one in opened if not isinstance(one, str)), default=1)
     fitting = [side for side in SIDES if layers * side * side <= MAX_PIXELS]
     enough = [side for side in fitting if side >= largest]
@@ -162,7 +155,7 @@ def _side(opened: Sequence[tuple[int, int] | str], layers: int) -> int:
 
 
 def _fill(pixels: NDArray[np.uint8], image: StoredImage, layer: Layer) -> str:
-    """Decode an image into a layer, shape (s, s, 4); return what is wrong with it, or nothing."""
+    """Decode an image into a layer, shape (s, s, 4); return the problem with it, or ""."""
     side = len(pixels)
     try:
         with Image.open(BytesIO(image.content), formats=FORMATS) as picture:

@@ -1,12 +1,11 @@
 """Every colour that the scenes use, and the colour maps that values are shown with."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-from .color_maps import STOPS
 
 Color = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""
@@ -45,12 +44,6 @@ JOINT_COLORS = (
     (177, 225, 161), (194, 110, 18), (102, 204, 186), (240, 208, 60), (173, 99, 196),
     (232, 122, 105), (173, 176, 246), (83, 43, 199), (95, 87, 0), (146, 0, 128), (0, 106, 75),
 )  # fmt: skip
-ALIKE = 0.015
-"""Difference of two colours over which the penalty for giving them to neighbours falls to 1/e."""
-ALL_EYES = 0.6
-"""Differences to all cones count by this factor, so that neighbours differ clearly to most."""
-SWEEPS = 30
-"""Over the joints, at most, until no joint changes its colour; a few are enough."""
 
 # How linear red, green and blue are seen by trichromats and by those who lack the long, middle
 # or short cones (Machado, Oliveira & Fernandes 2009).
@@ -91,23 +84,44 @@ class Theme:
         return self.mesh_edge, INTERIOR, self.surface_edge
 
 
-# Blue and green are the paper's hues, as light or dark as every one of `EYES` needs to tell them
-# from each other, from orange, and from what is around.
+# Blue and green are the paper's colours, as light or dark as every one of `EYES` needs to tell them
+# from each other, from orange, and from what is around. The green is a little bluish: without long
+# or middle cones the paper's has the hue of orange, and lines far away differ in lightness less.
 LIGHT = Theme(
     "light", _rgb(250, 251, 253), _rgb(222, 228, 236), _rgb(31, 38, 50), _rgb(58, 150, 192),
-    _rgb(20, 98, 10),
+    _rgb(0, 96, 64),
 )  # fmt: skip
 DARK = Theme(
     "dark", _rgb(37, 43, 54), _rgb(17, 20, 26), _rgb(232, 236, 243), _rgb(90, 170, 230),
-    _rgb(210, 250, 150),
+    _rgb(185, 255, 222),
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
+
+# Control points of the colour maps, mixed in OKLab, so that equal steps look equal.
+STOPS = {
+    # from the body's grey to glowing orange: vertices that a bone does not move stay quiet
+    "weight": "c9ced6 ecc58e f7a048 f06920 c02e1e 800e26",
+    # from the body's grey to dark violet: nothing is said where nothing is wrong
+    "error": "c9ced6 f7d97e f69442 da424e 8e1a6c 400c4e",
+    # less is blue, more is red, the same is the body's grey
+    "difference": "184e9e 5c9ece c9ced6 ee8860 ac162c",
+    # near is light and warm, far is deep blue
+    "distance": "fff5d6 facd80 8fc68c 2d9e9e 2668a0 343680 261648",
+    # few influences are calm, many glow
+    "count": "d6e0ec 96bed6 5694b2 845ca0 60225c",
+    # from the surface's green to the deepest orange
+    "depth": "b0d66c ebc85a ff8c28 d6420e 781814",
+    # winding numbers: outside is grey, inside orange
+    "winding": "969eac b0aca8 e29e6e ff6c0c",
+    # the same on the face of a cut, on which orange edges are to be seen
+    "inside": "b0b6c2 d6cee2 987ebe 5c3e8c",
+}
 
 TEXELS = 512
 UNREACHED_TEXELS = 8
 """The last texels of the map "reached", which is else like "distance"."""
 ISO_LINES = 16
-"""How many equal distances are drawn as lines over the range of a distance field."""
+"""Lines of equal distance over the range of a distance field."""
 
 
 @cache
@@ -124,94 +138,18 @@ def colormap(name: str) -> NDArray[np.uint8]:
     array, shape (512, 3), uint8
         The colour of values from the lower to the upper limit.
     """
-    stops = _srgb_to_oklab(np.array(STOPS["distance" if name == "reached" else name]) / 255)
+    codes = STOPS["distance" if name == "reached" else name].split()
+    stops = _srgb_to_oklab(np.array([list(bytes.fromhex(code)) for code in codes]) / 255)
     at = np.linspace(0, len(stops) - 1, TEXELS)
     mixed = np.stack([np.interp(at, np.arange(len(stops)), c) for c in stops.T], axis=1)
     table = np.clip(_oklab_to_srgb(mixed), 0, 1)
-    if name == "distance":
+    if name in ("distance", "reached"):
         table = _with_iso_lines(table)
     if name == "reached":
-        table = _with_unreached(_with_iso_lines(table))
+        table = _with_unreached(table)
     colors = to_bytes(table)
     colors.flags.writeable = False
     return colors
-
-
-def joint_colors(
-    parents: ArrayLike,
-    touching: ArrayLike = (),
-    nearby: ArrayLike = (),
-    sizes: ArrayLike | None = None,
-) -> NDArray[np.float64]:
-    """Return one colour a joint, far from its neighbours' to every kind of eye.
-
-    Parameters
-    ----------
-    parents : array_like, shape (j,)
-    touching, nearby : array_like, shape (k, 2), optional
-        Pairs of joints whose skin touches, and of joints whose skin is near in space.
-    sizes : array_like, shape (j,), optional
-        How much skin each joint has. Joints with much of it differ from each other first; joints
-        without any take what is left.
-
-    Returns
-    -------
-    array, shape (j, 3), float64
-        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`.
-    """
-    above = np.asarray(parents, int)
-    size = np.ones(len(above)) if sizes is None else np.asarray(sizes, float)
-    conflict = _conflicts(above, _pairs(touching), _pairs(nearby), size)
-    penalty = np.exp(-_differences() / ALIKE)
-    chosen, taken = np.full(len(above), -1), np.zeros((len(above), len(penalty)))
-    order = np.argsort(-conflict.sum(axis=1), kind="stable")
-    for _ in range(SWEEPS):
-        before = chosen.copy()
-        for joint in order:
-            chosen[joint] = int(np.argmin(conflict[joint] @ taken @ penalty))
-            taken[joint] = np.arange(len(penalty)) == chosen[joint]
-        if np.array_equal(before, chosen):
-            break
-    return np.array(JOINT_COLORS)[chosen] / 255
-
-
-def _pairs(pairs: ArrayLike) -> NDArray[np.intp]:
-    return np.asarray(pairs, int).reshape(-1, 2)
-
-
-def _conflicts(
-    above: NDArray, touching: NDArray, nearby: NDArray, size: NDArray
-) -> NDArray[np.float64]:
-    """Return how much each two joints should differ, (j, j), from parents, pairs and sizes."""
-    large = np.sqrt(size / size.max(initial=1e-300))
-    conflict = 1e-3 + 2e-2 * np.outer(large, large)
-    child = np.flatnonzero(above >= 0)
-    second = child[above[above[child]] >= 0]
-    is_sibling = (above[:, None] == above) & (above >= 0)
-    conflict[is_sibling] = np.maximum(conflict[is_sibling], 0.1)
-    groups = [
-        (np.stack([second, above[above[second]]], axis=1), 0.1),
-        (nearby, 0.2),
-        (np.stack([child, above[child]], axis=1), 1.0),
-    ]
-    for pairs, much in groups:
-        for a, b in (pairs.T, pairs.T[::-1]):
-            conflict[a, b] = np.maximum(conflict[a, b], much)
-    conflict[size == 0] *= 0.05
-    conflict[:, size == 0] *= 0.05
-    for a, b in (touching.T, touching.T[::-1]):
-        conflict[a, b] = 1
-    np.fill_diagonal(conflict, 0)
-    return conflict
-
-
-@cache
-def _differences() -> NDArray[np.float64]:
-    """Return how much joints' colours differ to the eye that sees it least, (c, c)."""
-    colors = np.array(JOINT_COLORS) / 255
-    labs = _srgb_to_oklab(colors)
-    to_most = np.linalg.norm(labs[:, None] - labs, axis=2)
-    return np.minimum(ALL_EYES * to_most, differences(colors))
 
 
 def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
@@ -220,9 +158,9 @@ def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
     return np.clip(_from_linear(linear), 0, 1)
 
 
-def differences(colors: ArrayLike) -> NDArray[np.float64]:
-    """Return how far apart colours (n, 3) are in OKLab, to the eye that sees it least, (n, n)."""
-    labs = np.stack([_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES])
+def differences(colors: ArrayLike, eyes: Iterable[str] = tuple(EYES)) -> NDArray[np.float64]:
+    """Return the distances (n, n) of colours (n, 3) in OKLab, to the eye that sees them least."""
+    labs = np.stack([_srgb_to_oklab(as_seen(colors, eye)) for eye in eyes])
     return np.linalg.norm(labs[:, :, None] - labs[:, None], axis=3).min(axis=0)
 
 

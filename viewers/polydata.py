@@ -32,7 +32,7 @@ def actor_of(mesh: pv.DataSet, scalars: str | None = None, **settings: Any) -> A
 
 
 def describe(plotter: pv.Plotter) -> Description:
-    """Return what a plotter shows; see `cutcell_viewers.describe`."""
+    """Return the scene of a plotter; see `cutcell_viewers.describe`."""
     actors = {}
     for name, drawn in plotter.renderer.actors.items():
         mapper: Any = getattr(drawn, "mapper", None)
@@ -44,7 +44,7 @@ def describe(plotter: pv.Plotter) -> Description:
 def add_legend(plotter: Any, legend: Legend, theme: Theme) -> None:
     """Write a description's legend into a plotter."""
     if legend.colormap:
-        table = pv.LookupTable(values=_opaque(colormap(legend.colormap)))
+        table = lookup_table(colormap(legend.colormap))
         table.scalar_range = (0, 1)
         table.annotations = {0.0: legend.low, 1.0: legend.high}
         plotter.add_scalar_bar(
@@ -116,5 +116,6 @@ def _colouring(array: NDArray[Any]) -> dict[str, Any]:
     return {"scalars": values, "limits": limits}
 
 
-def _opaque(table: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return np.hstack([table, np.full((len(table), 1), 255, np.uint8)])
+def lookup_table(colors: NDArray[np.uint8]) -> pv.LookupTable:
+    """Return opaque colours (n, 3) as a table of PyVista."""
+    return pv.LookupTable(values=np.hstack([colors, np.full((len(colors), 1), 255, np.uint8)]))

@@ -1,15 +1,15 @@
 """The character in a pose."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.pose import kinematics as motion
+from cutcell.pose import axis_rotation, forward_kinematics
 from cutcell.rig import Rig
-from cutcell.rig.clip import Clip
+from cutcell.rig.clip import Clip, Derived, Motion
 
-from .character import attachments, body, bones, pose_in_scene
+from .character import character, pose_in_scene
 from .description import Description
 
 SWING_SECONDS = 2.4
@@ -36,26 +36,8 @@ def pose_scene(
         The joint that is highlighted.
     skeleton : bool
     """
-    actors = {
-        "body": body(rig, weights),
-        **attachments(rig),
-        **bones(rig, chosen, skeleton),
-    }
-    return posed(Description(actors), rig, transforms)
-
-
-def posed(description: Description, rig: Rig, transforms: ArrayLike | None) -> Description:
-    """Return a description with its pose replaced by skinning matrices of the rig."""
-    pose = None if transforms is None else pose_in_scene(rig, transforms)
-    return replace(description, pose=pose)
-
-
-def pose_at(rig: Rig, clip: Clip, time: float) -> NDArray[np.float64]:
-    """Return a motion's pose at a time in seconds, in the scene's space, shape (j, 4, 4).
-
-    The motion repeats.
-    """
-    return pose_in_scene(rig, motion.pose_at(clip, time))
+    actors = character(rig, weights, chosen, skeleton)
+    return Description(actors, pose=pose_in_scene(rig, transforms))
 
 
 def clip_in_scene(rig: Rig, clip: Clip) -> Clip:
@@ -64,43 +46,20 @@ def clip_in_scene(rig: Rig, clip: Clip) -> Clip:
 
 
 @dataclass(frozen=True, eq=False)
-class _InScene:
-    """A clip's motion in the space that a matrix (4, 4) leads to."""
+class _InScene(Derived):
+    """A motion in the space that a matrix (4, 4) leads to."""
 
-    clip: Clip
+    motion: Motion
     world: NDArray[np.float64]
 
-    @property
-    def joints(self) -> int:
-        return self.clip.joints
-
-    @property
-    def duration(self) -> float:
-        return self.clip.duration
-
-    @property
-    def times(self) -> NDArray[np.float64]:
-        return self.clip.times
-
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.world @ self.clip.sample(seconds) @ np.linalg.inv(self.world)
-
-
-def turn(axis: str, degrees: float) -> NDArray[np.float64]:
-    """Return the rotation (3, 3) by an angle about x, y or z, right-handed."""
-    k = "xyz".index(axis)
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    result = np.eye(3)
-    a, b = (k + 1) % 3, (k + 2) % 3
-    result[a, a] = result[b, b] = c
-    result[a, b], result[b, a] = -s, s
-    return result
+        return self.world @ self.motion.sample(seconds) @ np.linalg.inv(self.world)
 
 
 def joint_turns(rig: Rig, turns: dict[int, NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return one rotation a joint, shape (j, 3, 3): the given ones, else none.
+    """Return a rotation for each joint, shape (j, 3, 3), from those of some in the scene's space.
 
-    The given ones are about the scene's axes, so that "x" means the same for every rig.
+    In that space "x" means the same for every rig.
     """
     rotations = np.broadcast_to(np.eye(3), (len(rig.skeleton.joints), 3, 3)).copy()
     world = rig.world[:3, :3]
@@ -110,7 +69,7 @@ def joint_turns(rig: Rig, turns: dict[int, NDArray[np.float64]]) -> NDArray[np.f
 
 
 def swing(rig: Rig, joint: int, axis: str, degrees: float) -> Clip:
-    """Return a motion that turns one joint to and fro about an axis of the scene.
+    """Return a motion that turns one joint to both sides about an axis of the scene.
 
     Parameters
     ----------
@@ -118,14 +77,9 @@ def swing(rig: Rig, joint: int, axis: str, degrees: float) -> Clip:
     joint : int
     axis : {"x", "y", "z"}
     degrees : float
-        How far to either side.
+        Angle to either side.
     """
-    from cutcell import forward_kinematics
-
-    phase = np.linspace(0, 2 * np.pi, SWING_FRAMES + 1)
-    transforms = [
-        forward_kinematics(rig.skeleton, joint_turns(rig, {joint: turn(axis, degrees * np.sin(p))}))
-        for p in phase
-    ]
+    angles = degrees * np.sin(np.linspace(0, 2 * np.pi, SWING_FRAMES + 1))
+    turns = [joint_turns(rig, {joint: axis_rotation(axis, angle)}) for angle in angles.tolist()]
     times = np.linspace(0, SWING_SECONDS, SWING_FRAMES + 1)
-    return Clip("swing", times, np.array(transforms))
+    return Clip("swing", times, [forward_kinematics(rig.skeleton, turn) for turn in turns])

@@ -19,12 +19,13 @@ import pyvista as pv
 from cutcell.io.materials.face_colors import BLENDED
 
 from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
-from .description import Actor, Cut, Description
+from .description import Actor, Description
 from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .skin import distances_between, moved, turned
+from .polydata import lookup_table
 from .strokes import depths, see_strokes, shade_strokes, stroke_data
-from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
+from .textured import cut_out, pieces, texture
+from .vtk_internals import add_overlay, clip, polygon_actor
 
 
 class Scene:
@@ -39,9 +40,9 @@ class Scene:
         Whether corners are darkened by ambient occlusion, which takes about a second without a
         graphics card.
     pixel_ratio : float, optional
-        How many pixels of the picture are one pixel of the page, in which widths are given.
+        Pixels of the picture per pixel of the page, in which widths are given.
     layered : bool
-        Whether overlays are a layer over the scene. PyVista's own windows and exports know one
+        Whether overlays are a layer over the scene. PyVista's own windows and exports have one
         layer: overlays are drawn nearer to the eye there, and lines and points plainly.
     """
 
@@ -60,7 +61,7 @@ class Scene:
         self.plotter = pv.Plotter(off_screen=True, window_size=window, lighting="none")
         if not fine:
             self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
-        self._overlay = _add_overlay(self.plotter) if layered else self.plotter.renderer
+        self._overlay = add_overlay(self.plotter) if layered else self.plotter.renderer
         self._layered = layered
         self.theme = theme
         for position, intensity in LIGHTS:
@@ -80,7 +81,7 @@ class Scene:
         return tuple(self._names)
 
     def show(self, description: Description) -> None:
-        """Make the scene what a description says, actors that are hidden left out."""
+        """Show a description, without its hidden actors."""
         for drawn in self._names.values():
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
@@ -112,29 +113,14 @@ class Scene:
             see_strokes(drawn, (width, height), depths(camera, self._bounds))
 
     def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
-        """Draw the scene.
-
-        Parameters
-        ----------
-        path : str or Path, optional
-            Where to write the PNG, too.
-
-        Returns
-        -------
-        array, shape (height, width, 3), uint8
-        """
+        """Draw the scene, also into a PNG if a path is given; shape (height, width, 3), uint8."""
         plotter: Any = self.plotter
         plotter.set_background(self.theme.bottom, top=self.theme.top)
-        plotter.renderer.ResetCameraClippingRange()
-        plotter.render_window.Render()  # a screenshot alone shows what was drawn before
-        return plotter.screenshot(None if path is None else str(path), return_img=True)
+        return self._screenshot(None if path is None else str(path))
 
     def render_clear(self) -> NDArray[np.uint8]:
         """Draw the scene on a transparent ground, shape (height, width, 4), uint8."""
-        plotter: Any = self.plotter
-        plotter.renderer.ResetCameraClippingRange()
-        plotter.render_window.Render()
-        pixels = plotter.screenshot(None, return_img=True, transparent_background=True)
+        pixels = self._screenshot(None, transparent_background=True)
         if self._scale == 1:
             return pixels
         height, width = pixels.shape[0] // self._scale, pixels.shape[1] // self._scale
@@ -144,25 +130,29 @@ class Scene:
         """Free the window."""
         self.plotter.close()
 
+    def _screenshot(self, path: str | None, **options: Any) -> NDArray[np.uint8]:
+        plotter: Any = self.plotter
+        plotter.renderer.ResetCameraClippingRange()
+        plotter.render_window.Render()  # a screenshot alone shows what was drawn before
+        return plotter.screenshot(path, return_img=True, **options)
+
     def _renderer(self, actor: pv.Actor) -> pv.Renderer:
         return self._overlay if self._overlay.HasViewProp(actor) else self.plotter.renderer
 
     def _parts(self, actor: Actor, description: Description) -> Iterator[pv.Actor]:
-        """Return what an actor is drawn as: in materials, a part for each image."""
+        """Return what VTK draws for an actor: in materials, a part for each image."""
         if actor.kind != "surface" and self._layered:
-            mapper = pv._vtk.vtkPolyDataMapper()
-            mapper.SetInputData(_dataset(actor, description.pose))
-            drawn = pv.Actor(mapper=mapper)
+            drawn = polygon_actor(_dataset(actor, description))
             haze = tuple((np.add(self.theme.top, self.theme.bottom) / 2).tolist())
             shade_strokes(drawn, actor, haze, self._pixel_ratio)
             self._strokes.append(drawn)
             yield drawn
             return
         if actor.materials is None:
-            data = _dataset(actor, description.pose, plain=True)
+            data = _dataset(actor, description, plain=True)
             yield pv.Actor(mapper=pv.DataSetMapper(data))
             return
-        points, normals = _posed(actor, description.pose)
+        points, normals = _posed(actor, description)
         for data, kind in pieces(points, normals, actor.cells, actor.materials):
             drawn = pv.Actor(mapper=pv.DataSetMapper(data))
             if kind[0] >= 0 and description.images is not None:
@@ -170,17 +160,17 @@ class Scene:
                     self._textures[kind] = texture(description.images[kind[0]], kind[1])
                 drawn.texture = self._textures[kind]
             if drawn.texture is not None or kind[1] >= BLENDED:
-                drawn.ForceOpaqueOn()
-                shader, how = drawn.GetShaderProperty(), DITHERED if kind[1] >= BLENDED else CUT_OUT
-                shader.AddFragmentShaderReplacement(ALPHA_KNOWN, False, how, False)
+                cut_out(drawn, kind[1])
             yield drawn
 
     def _add(self, drawn: pv.Actor, actor: Actor, description: Description) -> pv.Actor:
         mapper = drawn.mapper
         _paint(drawn, actor, self._pixel_ratio, description.front)
         if actor.clipped and description.cut is not None:
-            for plane in cut_planes(description.cut, actor.slab):
-                mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
+            origin, normal = np.array(description.cut.origin), np.array(description.cut.normal)
+            clip(drawn, origin, -normal)
+            if actor.slab > 0:
+                clip(drawn, origin - actor.slab * normal, normal)
         (self._overlay if actor.overlay else self.plotter.renderer).AddActor(drawn)
         if actor.overlay and self._overlay is self.plotter.renderer:
             mapper.SetResolveCoincidentTopologyToPolygonOffset()
@@ -192,7 +182,7 @@ class Scene:
 OVERLAY_OFFSET = -26_000
 """Depth offset of overlays where there is one layer, in steps of 1/65,536."""
 OCCLUSION_RADIUS = 0.06
-"""How far away what darkens a corner may be, in the scene's longest side."""
+"""Radius within which surfaces darken a corner, relative to the scene's longest side."""
 
 
 def render_png(
@@ -213,31 +203,17 @@ def render_png(
         scene.close()
 
 
-def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
-    """Return the planes that keep the far side of a cut, each as origin and normal.
-
-    A plane keeps the side that its normal points to.
-    """
-    origin, normal = np.array(cut.origin), np.array(cut.normal)
-    planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
-    if slab > 0:
-        back = origin - slab * normal
-        planes.append({"origin": tuple(back.tolist()), "normal": tuple(normal.tolist())})
-    return planes
-
-
-def _posed(actor: Actor, pose: NDArray[np.float64] | None) -> tuple[NDArray, NDArray | None]:
-    """Return an actor's points and normals in a pose."""
-    points, normals = actor.points, actor.normals
-    if pose is not None and actor.skin is not None:
-        points = moved(points, actor.skin, pose).astype(np.float32)
-        if normals is not None:
-            normals = turned(normals, actor.skin, pose).astype(np.float32)
+def _posed(actor: Actor, description: Description) -> tuple[NDArray, NDArray | None]:
+    """Return an actor's points and normals in the description's pose."""
+    pose, blending = description.pose, description.blending
+    points, normals = actor.points_in(pose, blending).astype(np.float32), actor.normals
+    if pose is not None and actor.skin is not None and normals is not None:
+        normals = actor.skin.turn(normals, pose, blending).astype(np.float32)
     return points, normals
 
 
-def _dataset(actor: Actor, pose: NDArray[np.float64] | None, plain: bool = False) -> pv.PolyData:
-    points, normals = _posed(actor, pose)
+def _dataset(actor: Actor, description: Description, plain: bool = False) -> pv.PolyData:
+    points, normals = _posed(actor, description)
     every: Any = slice(None)
     if plain:
         data: Any = pv.PolyData()
@@ -251,15 +227,17 @@ def _dataset(actor: Actor, pose: NDArray[np.float64] | None, plain: bool = False
     if actor.colors is not None:
         data.point_data["colors"] = actor.colors[every]
     elif actor.scalars is not None:
-        data.point_data["values"] = _values(actor, pose)[every]
+        data.point_data["values"] = _values(actor, description)[every]
     return data
 
 
-def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
+def _values(actor: Actor, description: Description) -> Any:
+    pose, blending = description.pose, description.blending
     if pose is None or actor.apart is None or actor.skin is None:
         return actor.scalars
-    lengths = distances_between(actor.points, actor.skin, actor.apart.skin, pose)
-    return (actor.apart.unit * lengths).astype(np.float32)
+    between = actor.skin.move(actor.points, pose, blending)
+    between -= actor.apart.skin.move(actor.points, pose, blending)
+    return (actor.apart.unit * np.linalg.norm(between, axis=1)).astype(np.float32)
 
 
 def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | None) -> None:
@@ -285,8 +263,7 @@ def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | Non
         table = colormap(actor.colormap)
         if actor.film and front is not None:
             table = behind_front(table, actor.limits, front)
-        opaque = np.full((len(table), 1), 255, np.uint8)
-        mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
+        mapper.lookup_table = lookup_table(table)
         mapper.scalar_range = actor.limits
     if actor.hull:
         appearance.culling = "front"
@@ -301,13 +278,3 @@ def behind_front(
     """Return a colour table that is the body's grey for values above the front."""
     values = np.linspace(*limits, len(table))
     return np.where(values[:, None] <= front, table, to_bytes(BODY)).astype(np.uint8)
-
-
-def _add_overlay(plotter: pv.Plotter) -> pv.Renderer:
-    renderer = pv.Renderer(plotter, border=False)
-    renderer.SetLayer(1)
-    renderer.SetActiveCamera(plotter.renderer.GetActiveCamera())
-    window: Any = plotter.render_window
-    window.SetNumberOfLayers(2)
-    window.AddRenderer(renderer)
-    return renderer

@@ -3,21 +3,22 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.graph import Lattice
+from cutcell.graph.sections import RaySlice, plane_outline
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
 from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
-from .ray_slice import RaySlice
 
 INSIDE, DROPPED = 0.13, 0.045
-"""How thick a segment is drawn, in cells of the lattice."""
+"""Thickness of kept and dropped segments, in cells of the lattice."""
 DIFFERENT = 0.3
-"""How thick a segment is marked that two methods decide differently, in cells."""
+"""Thickness of segments that two methods decide differently, in cells."""
 BEAD = 0.2
 MARGIN = 1.5
-"""How far beyond the body rays are drawn, in cells."""
+"""Length of rays beyond the body, in cells."""
 ALIKE = 0.005
 """Largest difference of winding numbers that share one label."""
 
@@ -50,12 +51,14 @@ def slice_scene(
     def placed(points: NDArray) -> NDArray[np.float64]:
         return to_scene(rig, lattice.to_file(points))
 
-    low, high, winding, is_inside = _joined(rays, _reach(rig, rays))
+    margin = MARGIN / lattice.resolution
+    box = lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
+    low, high, winding, is_inside = _joined(rays, box)
     size = cell * np.where(is_inside, INSIDE, DROPPED)
     points, faces, of = rods(placed(low), placed(high), size)
-    number = winding[of].astype(np.float32)
+    number = winding[of]
     actors = {
-        "slice rays": _solid(
+        "slice rays": Actor.solid(
             points,
             faces,
             scalars=np.clip(number, 0, 1),
@@ -64,13 +67,14 @@ def slice_scene(
         )
     }
     tips = rays.high[rays.inside]
-    inside = tips[_on_lattice(tips, lattice.resolution)]
+    cells = tips * lattice.resolution - 0.5
+    inside = tips[(np.abs(cells - cells.round()) < 1e-9).all(axis=1)]
     for name, at, color in (
         ("slice points", inside, INTERIOR),
         ("slice crossings", rays.crossing, SURFACE),
     ):
         points, faces = beads(placed(at), BEAD * cell)
-        actors[name] = _solid(points, faces, color=color)
+        actors[name] = Actor.solid(points, faces, color=color)
     marks = [(INTERIOR, "thick: kept"), (BONE_IDLE, "thin: dropped"), (SURFACE, "crossings")]
     if reference is not None:
         differs, missed = rays.decided_otherwise(reference), reference.decided_otherwise(rays)
@@ -80,25 +84,14 @@ def slice_scene(
         )
         points, faces, _ = rods(start, end, DIFFERENT * cell)
         if len(points):
-            actors["slice differences"] = _solid(points, faces, color=MARK)
+            actors["slice differences"] = Actor.solid(points, faces, color=MARK)
         count = max(int(differs.sum()), int(missed.sum()))
         marks.append((MARK, f"decided otherwise: {count:,} of {len(rays.low):,}"))
-    outline = _outline(rig, rays)
-    actors["slice outline"] = Actor(
-        "lines",
-        placed(outline.reshape(-1, 3)).astype(np.float32),
-        np.arange(2 * len(outline), dtype=np.int32).reshape(-1, 2),
-        color=theme.mesh_edge,
-        clipped=False,
-    )
-    legend = Legend(
-        "Winding number",
-        "winding",
-        "0",
-        "1",
-        tuple(marks),
-    )
-    return actors, legend
+    normal = np.eye(3)[np.argmin(np.ptp(rays.low, axis=0) + np.ptp(rays.high, axis=0))]
+    vertices = lattice.to_unit(rig.mesh.vertices)
+    ends = placed(plane_outline(vertices, rig.mesh.faces, rays.low[0], normal))
+    actors["slice outline"] = Actor.segments(ends, color=theme.mesh_edge)
+    return actors, Legend("Winding number", "winding", "0", "1", tuple(marks))
 
 
 def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[int, int, Cut]:
@@ -122,8 +115,6 @@ def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[
     cut : Cut
         The plane of the slice, which clips the near side.
     """
-    from cutcell.graph import Lattice
-
     normal, sign = file_axis(rig, axis)
     lattice = Lattice.around(rig.mesh, resolution)
     low, high = lattice.to_unit(rig.mesh.bounds)
@@ -145,12 +136,6 @@ def file_axis(rig: Rig, axis: str) -> tuple[int, int]:
     return nearest, 1 if row[nearest] > 0 else -1
 
 
-def _reach(rig: Rig, rays: RaySlice) -> NDArray[np.float64]:
-    """Return the corners of the body's box with some space around, in the unit cube."""
-    margin = MARGIN / rays.lattice.resolution
-    return rays.lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
-
-
 def _joined(
     rays: RaySlice, box: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
@@ -165,39 +150,3 @@ def _joined(
     first = np.flatnonzero(np.concatenate([[True], ~(follows & alike)]))
     last = np.append(first[1:], len(low)) - 1
     return low[first], high[last], winding[first], is_inside[first]
-
-
-def _on_lattice(points: NDArray[np.float64], resolution: int) -> NDArray[np.bool_]:
-    cells = points * resolution - 0.5
-    return np.asarray((np.abs(cells - cells.round()) < 1e-9).all(axis=1))
-
-
-def _outline(rig: Rig, rays: RaySlice) -> NDArray[np.float64]:
-    """Return where the slice's plane meets the triangles, shape (s, 2, 3), in the unit cube."""
-    level = rays.low[0]
-    normal = int(np.argmin(np.ptp(rays.low, axis=0) + np.ptp(rays.high, axis=0)))
-    corners = rays.lattice.to_unit(rig.mesh.vertices)[rig.mesh.faces]
-    height = corners[:, :, normal] - level[normal]
-    above = height > 0
-    met = above.any(axis=1) & ~above.all(axis=1)
-    corners, height, above = corners[met], height[met], above[met]
-    ends = []
-    for k in range(3):
-        a, b = corners[:, k], corners[:, (k + 1) % 3]
-        ha, hb = height[:, k], height[:, (k + 1) % 3]
-        crosses = above[:, k] != above[:, (k + 1) % 3]
-        part = np.where(crosses, ha / np.where(crosses, ha - hb, 1), np.nan)
-        ends.append(a + part[:, None] * (b - a))
-    three = np.stack(ends, axis=1)
-    found_ends = ~np.isnan(three[:, :, 0])
-    return three[found_ends].reshape(-1, 2, 3)
-
-
-def _solid(points: NDArray, faces: NDArray, **style: object) -> Actor:
-    return Actor(
-        "surface",
-        points.astype(np.float32),
-        faces.astype(np.int32),
-        clipped=False,
-        **style,  # type: ignore[arg-type]
-    )

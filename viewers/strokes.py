@@ -1,4 +1,4 @@
-"""Lines and points, drawn by PyVista as the page draws them (scripts/stroke_shaders.js)."""
+"""Lines and points, drawn by PyVista as the page draws them (frontend/stroke_shaders.js)."""
 
 from __future__ import annotations
 
@@ -10,6 +10,14 @@ from numpy.typing import NDArray
 
 from .camera import VIEW_ANGLE, Camera
 from .description import Actor
+from .vtk_internals import (
+    DECLARATIONS,
+    LIGHT,
+    POSITION,
+    add_attribute,
+    replace_in_shader,
+    set_uniforms,
+)
 
 _VERTEX = """//VTK::Normal::Dec
 in vec3 otherMC;
@@ -23,7 +31,7 @@ float strokeReach(float w) {
 }
 """
 _AWAY = """
-  if (strokeDash == 0.0) {  // as near as its own front: what lies in a surface is seen
+  if (strokeDash == 0.0) {  // as near as its front: strokes in a surface are visible
     vec3 ahead = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]);
     vec4 front = MCDCMatrix * vec4(centre - wide * gl_Position.w / strokeScale * ahead, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
@@ -90,18 +98,18 @@ _CORNERS = {
     "lines": ((0, -1), (1, -1), (0, 1), (1, 1)),
     "points": ((-1, -1), (1, -1), (-1, 1), (1, 1)),
 }
-"""Corners of the two triangles of each: end and side of a line, or place around a point."""
+"""Corners of the two triangles of each: end and side of a line, or offset from a point."""
 
 
 def stroke_data(
     actor: Actor, points: NDArray[np.float32]
 ) -> tuple[pv.PolyData, NDArray[np.integer]]:
-    """Return two triangles for each line or point, and which point each corner belongs to."""
+    """Return two triangles for each line or point, and the point of each corner."""
     ends = np.asarray(actor.cells)
     corners = np.array(_CORNERS[actor.kind], np.float32)
-    own = np.zeros(4, int) if actor.kind == "points" else corners[:, 0].astype(int)
-    of = ends[:, own].ravel()
-    other = ends[:, ends.shape[1] - 1 - own].ravel()
+    end = np.zeros(4, int) if actor.kind == "points" else corners[:, 0].astype(int)
+    of = ends[:, end].ravel()
+    other = ends[:, ends.shape[1] - 1 - end].ravel()
     first = 4 * np.arange(len(ends))[:, None, None]
     faces = (first + np.array([[0, 1, 2], [2, 1, 3]])).reshape(-1, 3)
     corners_of: Any = points[of]
@@ -116,43 +124,42 @@ def shade_strokes(drawn: Any, actor: Actor, haze: tuple[float, ...], pixel: floa
 
     Parameters
     ----------
-    drawn : vtkActor
-        With a mapper of polygons.
+    drawn : pyvista.Actor
+        From `polygon_actor`.
     actor : Actor
     haze : tuple of float
-        The colour of what is far.
+        The colour of distant strokes.
     pixel : float
-        How many pixels of the picture are one of the page.
+        Pixels of the picture per pixel of the page.
     """
-    mapper, shader = drawn.GetMapper(), drawn.GetShaderProperty()
-    mapper.MapDataArrayToVertexAttribute("otherMC", "other", 0, -1)
-    mapper.MapDataArrayToVertexAttribute("cornerMC", "corner", 0, -1)
-    light = _LIGHTS["lines" if actor.kind == "lines" else actor.form]
-    shader.AddVertexShaderReplacement("//VTK::Normal::Dec", True, _VERTEX, False)
-    place = _LINE if actor.kind == "lines" else _POINT
-    shader.AddVertexShaderReplacement("//VTK::PositionVC::Impl", True, place, False)
-    shader.AddFragmentShaderReplacement("//VTK::Normal::Dec", True, _FRAGMENT, False)
-    shader.AddFragmentShaderReplacement("//VTK::Light::Impl", False, _PAINT % light, False)
-    for uniforms in (shader.GetVertexCustomUniforms(), shader.GetFragmentCustomUniforms()):
-        uniforms.SetUniformf("strokeDash", actor.dash)
-    shader.GetFragmentCustomUniforms().SetUniform3f("strokeHaze", haze)
-    uniforms = shader.GetVertexCustomUniforms()
-    uniforms.SetUniformf("strokeThick", actor.thick)
-    uniforms.SetUniformf("strokeUnit", pixel)
-    uniforms.SetUniformf("strokePixels", actor.width * pixel)
+    add_attribute(drawn, "other")
+    add_attribute(drawn, "corner")
+    lines = actor.kind == "lines"
+    light = _LIGHTS["lines" if lines else actor.form]
+    replace_in_shader(drawn, "Vertex", DECLARATIONS, _VERTEX)
+    replace_in_shader(drawn, "Vertex", POSITION, _LINE if lines else _POINT)
+    replace_in_shader(drawn, "Fragment", DECLARATIONS, _FRAGMENT)
+    replace_in_shader(drawn, "Fragment", LIGHT, _PAINT % light, early=False)
+    set_uniforms(drawn, "Fragment", strokeDash=actor.dash, strokeHaze=haze)
+    set_uniforms(
+        drawn,
+        "Vertex",
+        strokeDash=actor.dash,
+        strokeThick=actor.thick,
+        strokeUnit=pixel,
+        strokePixels=actor.width * pixel,
+    )
     see_strokes(drawn, (100, 100), (0.0, 1.0))
 
 
 def see_strokes(drawn: Any, size: tuple[int, int], depths: tuple[float, float]) -> None:
     """Set the size of the picture and the range of depths for strokes."""
-    uniforms = drawn.GetShaderProperty().GetVertexCustomUniforms()
-    uniforms.SetUniform2f("strokeSize", size)
-    uniforms.SetUniformf("strokeScale", size[1] / (2 * np.tan(np.radians(VIEW_ANGLE / 2))))
-    uniforms.SetUniform2f("strokeDepths", depths)
+    scale = size[1] / (2 * np.tan(np.radians(VIEW_ANGLE / 2)))
+    set_uniforms(drawn, "Vertex", strokeSize=size, strokeScale=scale, strokeDepths=depths)
 
 
 def depths(camera: Camera, bounds: NDArray[np.float64]) -> tuple[float, float]:
-    """Return between which distances ahead of the eye a box lies."""
+    """Return the nearest and the farthest distance of a box ahead of the eye."""
     ahead = np.array(camera.focal_point) - np.array(camera.position)
     ahead /= np.linalg.norm(ahead)
     middle = float((bounds.mean(axis=0) - camera.position) @ ahead)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import TracebackType
+from contextlib import AbstractContextManager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +12,13 @@ from .description import Description, in_view
 from .lettering import free_corner, legend_card, put_card, write_captions
 from .palette import LIGHT, Theme, to_bytes
 from .scene import Scene
-from .tiles import Tile, shape_of, tiles
+from .tiles import shape_of, tiles
 
 SAME = 4
-"""How far a colour may be from the ground's and still be taken for it, of 255."""
+"""Largest difference, of 255, from the background of a pixel that shows nothing."""
 
 
-class Studio:
+class Studio(AbstractContextManager["Studio"]):
     """Draws one description after another, under any camera; frees its windows at the end.
 
     Parameters
@@ -31,19 +31,14 @@ class Studio:
     legend : bool
         Whether the legend is written on them.
     page_height : float
-        How high a page's canvas is that looks the same, in its pixels.
+        Height of a page's canvas that looks the same, in its pixels.
     transparent : bool
-        Whether pictures have no ground, but a fourth channel.
+        Whether pictures have a fourth channel instead of a background.
 
     Attributes
     ----------
     is_steady : bool
-        Whether the legend stays where it is on the first picture that is drawn from now on.
-
-    Examples
-    --------
-    >>> with Studio(description, size=(800, 600)) as studio:  # doctest: +SKIP
-    ...     pixels = studio.draw(studio.camera())
+        Whether the legend keeps its place on the next picture.
     """
 
     def __init__(
@@ -64,7 +59,7 @@ class Studio:
         self._divide(size)
 
     def _divide(self, size: tuple[int, int]) -> None:
-        """Divide a part of the picture, from above, among the views."""
+        """Divide the upper part of the picture among the views."""
         for scene in self._scenes:
             scene.close()
         count, shape = max(len(self._description.views), 1), shape_of(self._description.bounds)
@@ -75,7 +70,7 @@ class Studio:
         self.show(self._description)
 
     def show(self, description: Description) -> None:
-        """Make every view what a description says."""
+        """Show a description in all views."""
         self._description = description
         for view, scene in enumerate(self._scenes):
             scene.show(in_view(description, view))
@@ -90,16 +85,7 @@ class Studio:
         return framing(bounds, self.shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
-        """Draw all.
-
-        Parameters
-        ----------
-        camera : Camera
-
-        Returns
-        -------
-        array, shape (height, width, 3 or 4), uint8
-        """
+        """Draw a picture, shape (height, width, 3 or 4), uint8."""
         picture, covered = self._draw_views(camera)
         legend = self._description.legend if self.legend else None
         if legend is None:
@@ -116,7 +102,7 @@ class Studio:
         return put_card(picture, card, place)
 
     def _draw_views(self, camera: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-        """Return the picture without a legend, and where something is seen on it."""
+        """Return the picture without a legend, and a mask of the pixels that show something."""
         ground = (*to_bytes(self.theme.bottom), 0)[: 4 if self._transparent else 3]
         picture = np.full((self.size[1], self.size[0], len(ground)), ground, np.uint8)
         covered = np.zeros(picture.shape[:2], bool)
@@ -142,25 +128,12 @@ class Studio:
         """Width over height of each view; of the narrowest where they differ."""
         return min(width / height for _, _, width, height in self._tiles)
 
-    @property
-    def places(self) -> list[Tile]:
-        """The rectangle of each view in the picture."""
-        return self._tiles
-
     def close(self) -> None:
         """Free the windows."""
         for scene in self._scenes:
             scene.close()
 
-    def __enter__(self) -> Studio:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
 

@@ -1,4 +1,4 @@
-"""Surfaces in a file's materials, as VTK draws them: one piece for each image."""
+"""Surfaces in a file's materials, as VTK draws them: a piece for each image."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -8,6 +8,8 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import BLENDED, CLAMP, MIRROR, REPEAT, FaceColors
+
+from .vtk_internals import ALPHA, replace_in_shader
 
 # Members of `pyvista.Texture.WrapType`. By name: the class brings matplotlib, 60 MB of memory,
 # and the page's server imports this long before anybody wants a picture.
@@ -21,7 +23,7 @@ def pieces(
     faces: NDArray[np.int32],
     colors: FaceColors,
 ) -> Iterator[tuple[pv.PolyData, tuple[int, int]]]:
-    """Part a surface by what colours it.
+    """Divide a surface by its images.
 
     Parameters
     ----------
@@ -56,6 +58,13 @@ def pieces(
         yield data, (layer, wrap)
 
 
+def cut_out(drawn: pv.Actor, wrap: int) -> None:
+    """Draw a piece opaquely, without what its image leaves out."""
+    drawn.ForceOpaqueOn()
+    code = DITHERED if wrap >= BLENDED else CUT_OUT
+    replace_in_shader(drawn, "Fragment", ALPHA, code, early=False)
+
+
 def texture(image: NDArray[np.uint8], wrap: int) -> pv.Texture:
     """Return a layer (s, s, 4) as a texture; VTK wraps both ways alike, as it does across."""
     opaque = (image[..., 3] == OPAQUE).all()
@@ -65,14 +74,11 @@ def texture(image: NDArray[np.uint8], wrap: int) -> pv.Texture:
     return made
 
 
-ALPHA_KNOWN = "//VTK::DepthPeeling::Impl"
-"""Where in VTK's shader the image was looked up; its place for images is gone by then."""
-
 CUT_OUT = """//VTK::DepthPeeling::Impl
   if (gl_FragData[0].a < 0.5) { discard; }
   gl_FragData[0].a = 1.0;
 """
-"""Nothing is drawn where an image is less than half there."""
+"""Draws nothing where alpha is below a half."""
 
 DITHERED = """//VTK::DepthPeeling::Impl
   vec2 fine = floor(gl_FragCoord.xy);
@@ -82,4 +88,4 @@ DITHERED = """//VTK::DepthPeeling::Impl
   if (gl_FragData[0].a < least) { discard; }
   gl_FragData[0].a = 1.0;
 """
-"""As many pixels are drawn as alpha says, as on the page (scripts/materials.js)."""
+"""Draws the share of pixels that alpha gives, as the page does (frontend/materials.js)."""

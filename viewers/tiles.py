@@ -1,4 +1,4 @@
-"""How views that stand side by side share a picture."""
+"""Division of a picture among views side by side."""
 
 from math import ceil
 
@@ -20,13 +20,13 @@ def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
     size : (int, int)
         Width and height of the picture.
     shape : float
-        Width over height of what is shown.
+        Width over height of the contents.
 
     Returns
     -------
     list of (left, top, width, height)
         Row by row from the upper left. The page's view divides its canvas in the same way, but
-        keeps what stands there clear of the captions.
+        leaves room for the captions.
     """
     width, height = size
 

@@ -1,5 +1,6 @@
 """The character coloured by its weights: of one joint, or of all at once."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,13 +8,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
 
-from .character import attachments, body, bones
+from .character import character
 from .description import Description, Legend, Reading
 from .joint_colors import colors_of
-from .palette import UNREACHED, to_bytes
+from .palette import UNREACHED, colormap, to_bytes
 from .short_names import short_names
 
 MIXED = "Each bone's colour, mixed by weight"
+WEIGHT_SCALES = ("linear", "log", "limit")
+DECADES = 3
+"""Powers of ten that the logarithmic scale shows."""
+FAINTEST = 0.4
+"""Place in the colour map of a weight at the limit, where all above it is to be seen."""
 MOST = "Dominant bone"
 
 
@@ -33,43 +39,58 @@ def weights_scene(
     rig : Rig
     weights : array_like, shape (n, j)
     joint : int, optional
-        Whose weights to show, from grey (none) to dark red (all). Without it every joint
+        Show this joint's weights, from grey (none) to dark red (all). By default every joint
         has a colour, and each vertex their mixture, the strongest foremost.
     skeleton : bool
-        Whether the bones are seen.
+        Whether the bones are visible.
     chosen : int, optional
-        The joint that is highlighted; `joint` when left out.
-    **look
+        The highlighted joint; `joint` by default.
+    **style
         Other fields of the body's `Actor`.
-
-    Returns
-    -------
-    Description
-        With the actors "body", "bones" and "attachment 0", "attachment 1", ...
     """
     colors, legend = weight_colors(rig, weights, joint)
-    actors = {
-        "body": body(rig, weights, **colors, **style),
-        **attachments(rig),
-        **bones(
-            rig,
-            joint if chosen is None else chosen,
-            skeleton,
-            colors_of(rig) if joint is None else None,
-        ),
-    }
+    actors = character(
+        rig,
+        weights,
+        joint if chosen is None else chosen,
+        skeleton,
+        colors_of(rig) if joint is None else None,
+        **colors,
+        **style,
+    )
     return Description(actors, legend=legend)
 
 
 def weight_colors(
-    rig: Rig, weights: ArrayLike, joint: int | None = None
+    rig: Rig,
+    weights: ArrayLike,
+    joint: int | None = None,
+    branch: bool = False,
+    scale: str = "linear",
+    limit: float = 0.05,
 ) -> tuple[dict[str, Any], Legend]:
-    """Return the fields of the body's `Actor` that colour it, and how to read them."""
+    """Return the fields of the body's `Actor` that colour it, and how to read them.
+
+    The weight of a branch is the sum over the joint and all joints below it. A joint's weight is
+    shown as it is, by its logarithm, or where it is above a limit: `scale` is one of
+    `WEIGHT_SCALES`.
+    """
     if joint is not None:
-        name = short_names(rig.skeleton.names)[joint]
-        legend = Legend(f"Weight of {name}", "weight", "0", "1")
-        scalars = np.ascontiguousarray(np.asarray(weights)[:, joint], np.float32)
-        return {"scalars": scalars, "colormap": "weight", "reading": Reading(f"{name} ")}, legend
+        name = short_names(rig.skeleton.names)[joint] + " and below" * branch
+        columns = rig.skeleton.subtree[joint] if branch else [joint]
+        values = np.asarray(weights)[:, columns].sum(axis=1).astype(np.float32)
+        title, low = f"Weight of {name}", "0"
+        scalars: NDArray[Any] = values
+        if scale == "log":
+            low = f"\N{LESS-THAN OR EQUAL TO} {10.0**-DECADES:g}"
+            shown = np.log10(np.maximum(values, 10.0**-DECADES), dtype=np.float32)
+            scalars = 1 + shown / DECADES
+        elif scale == "limit":
+            title, low = f"{title} above {limit:.3g}", "0"
+            scalars = np.where(values > limit, FAINTEST + (1 - FAINTEST) * values, 0)
+        reading = Reading(f"{name} ", None if scalars is values else values)
+        style = {"scalars": scalars, "colormap": "weight", "reading": reading}
+        return style, Legend(title, "weight", low, "1")
     colors = to_bytes(np.clip(_mixed(rig, np.asarray(weights)), 0, 1))
     return {"colors": colors, "reading": _strongest(rig, weights)}, Legend(MIXED)
 
@@ -90,7 +111,7 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
 
 
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
-    """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
+    """Colour each vertex by its dominant joint; see `weight_colors`."""
     reading = _strongest(rig, weights)
     colors = to_bytes(colors_of(rig))
     assert reading.values is not None
@@ -99,7 +120,7 @@ def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legen
 
 
 def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
-    """Colour each vertex by the number of joints that it follows; see `weight_colors`."""
+    """Colour each vertex by its number of influences; see `weight_colors`."""
     count = (np.asarray(weights) > 0).sum(axis=1).astype(np.float32)
     most = max(int(count.max(initial=1)), 2)
     legend = Legend("Influences", "count", "1", f"{most}")
@@ -110,33 +131,32 @@ def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
 def difference_colors(
     rig: Rig, weights: ArrayLike, other: ArrayLike
 ) -> tuple[dict[str, Any], Legend]:
-    """Colour each vertex by the part of its weight that two matrices give to different joints.
-
-    See `weight_colors`.
-    """
+    """Colour each vertex by the weight that differs from the file's; see `weight_colors`."""
     moved = np.abs(np.asarray(weights, np.float32) - np.asarray(other, np.float32)).sum(axis=1) / 2
     legend = Legend("Difference to the file's weights", "error", "0%", "100%")
     style = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
     return {**style, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
 
 
+def symmetry_colors(values: NDArray[np.float64]) -> tuple[dict[str, Any], Legend]:
+    """Colour each vertex by the difference to its mirror image, (n,); nan where it has none."""
+    legend = Legend("Difference to the mirror image", "error", "0%", "100%")
+    has_image, table = np.isfinite(values), colormap("error")
+    shown = np.where(has_image, values, 0.0).astype(np.float32)
+    colors = table[np.round(shown * (len(table) - 1)).astype(int)]
+    if not has_image.all():
+        colors[~has_image] = to_bytes(UNREACHED)
+        legend = replace(legend, swatches=((UNREACHED, "no mirror image"),))
+    reading = Reading("Differs from its mirror image by ", shown, percent=True)
+    return {"colors": colors, "reading": reading}, legend
+
+
 def bone_difference_colors(
     rig: Rig, weights: ArrayLike, truth: ArrayLike, joint: int, names: tuple[str, str]
 ) -> tuple[dict[str, Any], Legend]:
-    """Colour each vertex by what one matrix gives to a joint beyond what another does.
+    """Colour each vertex by a joint's weight in one matrix minus that in another.
 
-    Parameters
-    ----------
-    rig : Rig
-    weights, truth : array_like, shape (n, j)
-    joint : int
-    names : (str, str)
-        What the two are called.
-
-    Returns
-    -------
-    look, legend
-        As `weight_colors`.
+    `names` are those of the two matrices; see `weight_colors`.
     """
     name = short_names(rig.skeleton.names)[joint]
     more = np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]
@@ -147,4 +167,4 @@ def bone_difference_colors(
 
 
 def _strongest(rig: Rig, weights: ArrayLike) -> Reading:
-    return Reading("", np.asarray(weights).argmax(axis=1).astype(np.float32), rig.skeleton.names)
+    return Reading("", np.asarray(weights).argmax(axis=1), rig.skeleton.names)

@@ -1,0 +1,274 @@
+"""Drawing in a subprocess, which answers pickled requests.
+
+Without OpenGL VTK ends its process, windows belong to one thread, and drawing takes long: none of
+this may harm the caller.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from queue import Empty, Queue
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import IO, TYPE_CHECKING, Any
+
+from cutcell.errors import CutcellError, MissingLibraryError
+from cutcell.runtime.progress import Progress, silent
+from cutcell.runtime.subprocesses import end_first_without_memory, python_environment
+from cutcell.runtime.writing import write_all
+
+from .camera import Camera
+from .description import Description, in_view
+from .film import Order, draw
+from .tiles import Tile
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+IDLE_SECONDS = 120.0
+"""Seconds without a request after which the process ends."""
+ASK_EVERY = 0.1
+"""Seconds between two checks whether the picture is still needed."""
+MAX_MEMORY = 1 << 30
+"""Bytes of a process that ends after its request, so that the next one starts another."""
+MAX_SIZES = 2
+"""Sizes that a process keeps windows for: a moving view is drawn smaller than a resting one."""
+
+
+TRIAL = """
+import cutcell_viewers.scene, pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(16, 16))
+plotter.add_mesh(pyvista.Sphere())
+plotter.screenshot(return_img=True)
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A picture of the page's canvas, transparent, without its legend and captions.
+
+    Parameters
+    ----------
+    description : Description
+    camera : Camera
+    size : (int, int)
+        Width and height in pixels.
+    tiles : tuple of Tile
+        The rectangle of each view.
+    pixel_ratio : float
+        Pixels of the picture per pixel of the page.
+    fine : bool
+        Whether corners are darkened by ambient occlusion and edges are smooth.
+    """
+
+    description: Description
+    camera: Camera
+    size: tuple[int, int]
+    tiles: tuple[Tile, ...]
+    pixel_ratio: float = 1.0
+    fine: bool = True
+
+
+class DrawingProcess:
+    """A subprocess that draws requests in turn; it starts when needed and ends when idle."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: Any = None
+        self._messages: Queue[Any] = Queue()
+        self._timer: threading.Timer | None = None
+
+    def draw(self, request: Frame | tuple[Order, Path], progress: Progress = silent) -> Any:
+        """Return a frame as a PNG, or draw an order into a file; other threads wait.
+
+        Parameters
+        ----------
+        request : Frame or (Order, Path)
+        progress : callable
+            Called with the stage and the completed part; if it raises, the process ends.
+
+        Raises
+        ------
+        FileError, MissingLibraryError
+            See `film.draw`; or this machine has no OpenGL.
+        """
+        with self._lock:
+            self._restart_timer()
+            process = self._process or self._start()
+            try:
+                pickle.dump(request, process.stdin, 5)
+                process.stdin.flush()
+                answer, is_last = self._await_answer(progress)
+            except (OSError, EOFError):
+                process.wait()
+                reason = self._last_complaint() or f"exit code {process.returncode}"
+                self._end()
+                require_opengl()
+                raise RuntimeError(f"the picture could not be drawn: {reason}") from None
+            except BaseException:
+                self._end()
+                raise
+            if is_last:
+                self._end()
+        if isinstance(answer, CutcellError):
+            raise answer
+        return answer
+
+    def close(self) -> None:
+        """End the process."""
+        with self._lock:
+            self._end()
+            if self._timer is not None:
+                self._timer.cancel()
+
+    def _restart_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = threading.Timer(IDLE_SECONDS, self.close)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def _start(self) -> Any:
+        self._complaints = TemporaryFile()  # noqa: SIM115 (never full, as a pipe may be)
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", f"import {__name__} as drawing; drawing.main()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._complaints,
+            env=python_environment(),
+        )
+        self._messages = Queue()
+        pipes = self._process.stdout, self._messages
+        threading.Thread(target=_read, args=pipes, daemon=True).start()
+        return self._process
+
+    def _await_answer(self, progress: Progress) -> tuple[Any, bool]:
+        """Return the answer to a request, and whether it is the process's last."""
+        status = "drawing", 0.0
+        while True:
+            progress(*status)
+            with suppress(Empty):
+                message = self._messages.get(timeout=ASK_EVERY)
+                if message is None:
+                    raise EOFError
+                if message[0] == "answer":
+                    return message[1:]
+                status = message[1:]
+
+    def _last_complaint(self) -> str:
+        self._complaints.seek(0)
+        lines = self._complaints.read().decode(errors="replace").strip().splitlines()
+        return lines[-1] if lines else ""
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            with suppress(OSError):
+                process.stdin.close()
+            self._complaints.close()
+
+
+def draw_isolated(order: Order, path: str | Path, progress: Progress = silent) -> None:
+    """Draw an order into a file in a new process; see `DrawingProcess.draw`.
+
+    If `progress` raises, no file is left.
+    """
+    path = Path(path)
+    order.check(path)
+    process = DrawingProcess()
+    with TemporaryDirectory(prefix="cutcell-draw-") as folder:
+        drawn = Path(folder) / f"drawn{path.suffix.lower()}"
+        try:
+            process.draw((order, drawn), progress)
+        finally:
+            process.close()
+        write_all({path: drawn.read_bytes()})
+
+
+def require_opengl() -> None:
+    """Raise a `MissingLibraryError` if VTK cannot draw without a screen."""
+    if not _can_draw():
+        raise MissingLibraryError(
+            "this machine has no OpenGL to draw a picture with; on Debian or Ubuntu install "
+            "it by: apt-get install libegl1 libgl1-mesa-dri"
+        )
+
+
+@cache
+def _can_draw() -> bool:
+    command = [sys.executable, "-c", TRIAL]
+    done = subprocess.run(command, capture_output=True, timeout=120, env=python_environment())
+    return done.returncode == 0
+
+
+def _read(stream: IO[bytes], messages: Queue[Any]) -> None:
+    """Hand on pickled messages until the stream ends, then None."""
+    with stream, suppress(EOFError, OSError, pickle.UnpicklingError):
+        while True:
+            messages.put(pickle.load(stream))
+    messages.put(None)
+
+
+def main() -> None:
+    """Answer the requests of the input until it ends."""
+    import psutil
+
+    end_first_without_memory()
+    source, sink = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever libraries print is no message
+    scenes: dict[Any, list[Scene]] = {}
+
+    def send(*message: object) -> None:
+        pickle.dump(message, sink, 5)
+        sink.flush()
+
+    while True:
+        try:
+            request = pickle.load(source)
+        except EOFError:
+            return
+        answer: object = None
+        try:
+            if isinstance(request, Frame):
+                answer = _draw_frame(request, scenes)
+            else:
+                order, path = request
+                draw(order, path, lambda *status: send("progress", *status))
+        except CutcellError as error:
+            answer = error
+        send("answer", answer, psutil.Process().memory_info().rss > MAX_MEMORY)
+
+
+def _draw_frame(frame: Frame, scenes: dict[Any, list[Scene]]) -> bytes:
+    """Return a frame as a PNG; scenes are reused, as their shaders take seconds to compile."""
+    from PIL import Image
+
+    from .scene import Scene
+
+    key = (frame.size, frame.tiles, frame.pixel_ratio, frame.fine)
+    if key not in scenes:
+        while len(scenes) >= MAX_SIZES:
+            for scene in scenes.pop(next(iter(scenes))):
+                scene.close()
+        scenes[key] = [
+            Scene(size=tile[2:], fine=frame.fine, pixel_ratio=frame.pixel_ratio)
+            for tile in frame.tiles
+        ]
+    picture = Image.new("RGBA", frame.size)
+    for view, (scene, tile) in enumerate(zip(scenes[key], frame.tiles, strict=True)):
+        scene.show(in_view(frame.description, view))
+        scene.set_camera(frame.camera)
+        picture.paste(Image.fromarray(scene.render_clear(), "RGBA"), tile[:2])
+    written = BytesIO()
+    picture.save(written, "png", compress_level=1)
+    return written.getvalue()
