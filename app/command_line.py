@@ -4,15 +4,15 @@ Panel and PyVista are imported once a command runs, so that `--help` answers at 
 """
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from cutcell.cli.console import for_people
-from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell.errors import ParameterError
 from cutcell_lab.cli.networks import Networks, offer_networks
 
-from .render_command import EPILOG, render
+from .headless.command import EPILOG, render, required
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -25,20 +25,20 @@ def add_commands(app: typer.Typer) -> None:
 def open_page(
     rig: Annotated[
         Path | None,
-        typer.Argument(metavar="[RIG]", help="What to open; a demo character when left out."),
+        typer.Argument(metavar="[RIG]", help="The file to open. Default: a demo character."),
     ] = None,
     port: Annotated[
         int,
         typer.Option(
             "--port",
-            help="Where the page is served; the next free one if taken, any free one if 0.",
+            help="Port of the page; the next free one if it is taken, any free one if 0.",
         ),
     ] = 5006,
     address: Annotated[
         str,
         typer.Option(
             "--address",
-            help="What to listen on. localhost: this machine only. 0.0.0.0, or the address of one"
+            help="Address to listen on. localhost: this machine. 0.0.0.0, or the address of one"
             " network: everyone there can use the page, without a password or encryption.",
         ),
     ] = "localhost",
@@ -50,6 +50,23 @@ def open_page(
             help="Step through the pairs that `cutcell dataset audit` found, and overrule them.",
         ),
     ] = None,
+    allow_frame: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--allow-frame",
+            metavar="ORIGIN",
+            help="Let pages of this origin, such as https://example.org, put the page into a frame."
+            " May be repeated.",
+        ),
+    ] = None,
+    lesson: Annotated[
+        Path | None,
+        typer.Option(
+            "--lesson",
+            metavar="FOLDER_OR_FILE",
+            help="Lesson of the panel Learn: Markdown files, a step each, or one file of steps.",
+        ),
+    ] = None,
     networks: Networks = None,
     show: Annotated[
         bool, typer.Option("--show/--no-show", help="Open a browser on the page.")
@@ -58,28 +75,24 @@ def open_page(
     """Open the page: look at a character, its graph, distances and weights, and move it."""
     if not 0 <= port <= 65535:
         raise ParameterError(f"port must be a whole number from 0 to 65,535, not {port}")
-    serve = _page()
+    (server,) = required("the page needs", "cutcell_app.serve")
     if rig is not None:
         from cutcell.io import load
 
         load(rig)  # report an invalid file here, not on an empty page
     offer_networks(networks)
     try:
-        serve(rig, port=port, address=address, show=show, pairs=pairs)
+        server.serve(
+            rig,
+            port=port,
+            address=address,
+            show=show,
+            pairs=pairs,
+            frames=allow_frame or (),
+            lesson=lesson,
+        )
     except OSError as error:
         raise ParameterError(
             f"the page cannot be served at {address}, port {port} ({error.strerror or error}); "
             "choose another --address or --port"
         ) from None
-
-
-def _page() -> Any:
-    """Fetch the page, or say how to install what it needs."""
-    try:
-        from .serve import serve
-    except ModuleNotFoundError as error:
-        raise MissingLibraryError(
-            f"the page needs libraries that are not installed ({error.name} is missing); "
-            "install them by: pip install 'cutcell[app]'"
-        ) from None
-    return serve

@@ -5,13 +5,13 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import panel as pn
-import panel_material_ui  # noqa: F401  its components must be known before a page is served
+import panel_material_ui  # noqa: F401  registers its components before a page is served
 from bokeh.settings import settings
 from bokeh.util.browser import view
 
@@ -20,26 +20,29 @@ from cutcell.weights.warm_up import is_compiled, start_process, warm_up
 from cutcell_lab.dataset import load_audit
 from cutcell_viewers.description import Actor
 
+from .derive.processes import get_ready
+from .features.learn.checked import read_checked
+from .features.learn.lesson import Lesson
+from .features.pairs.choices import OpenedAudit
 from .files.upload_cache import UPLOADS
-from .jobs.processes import get_ready
-from .layout.page import page
+from .server.frames import check_origins
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
-from .state.pairs import OpenedAudit
+from .shell.page import page
 from .widgets.modules import STATIC, head
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
 MAX_BODY = 64 * 1024
-"""Bytes of a request's body: nothing is sent that way."""
+"""Bytes of a request's body; uploads use the websocket."""
 LOCAL = ("localhost", "127.0.0.1", "::1")
 
 ENDINGS = {
     "check_unused_sessions_milliseconds": 5000,
     "unused_session_lifetime_milliseconds": 15000,
 }
-"""Sessions whose browser is gone give their memory and files back soon."""
+"""Sessions whose browser is gone end soon, with their memory and files."""
 
 EXPOSED = (
     "the page listens on {address}: everyone who can reach port {port} of this machine can open "
@@ -55,6 +58,8 @@ def serve(
     show: bool = True,
     pairs: Path | None = None,
     actors: Mapping[str, Actor] | None = None,
+    frames: Collection[str] = (),
+    lesson: Path | None = None,
 ) -> None:
     """Serve the page until the process is stopped.
 
@@ -63,48 +68,55 @@ def serve(
     rig : path, optional
         The character to open; a demo when left out.
     port : int
-        Where; 0 takes any free one. A port that is taken makes way for the next free one.
+        The next free port is used if this one is taken, and any free one if it is 0.
     address : str
-        What to listen on: "localhost" for this machine only; the address of a network's
-        interface, or "0.0.0.0" for all of them, for everyone in that network.
+        "localhost" for this machine only; the address of a network's interface, or "0.0.0.0" for
+        all of them, for everyone in that network.
     show : bool
         Whether to open a browser.
     pairs : path, optional
-        The folder of an audit whose pairs are looked at.
+        The folder of an audit whose pairs are reviewed.
     actors : mapping of str to Actor, optional
         Meshes to show with every character, in the scene's space, where y is up. Those of a
         PyVista plotter are `cutcell_viewers.describe(plotter).actors`.
+    frames : collection of str
+        Origins whose pages may put this page into a frame, such as "https://example.org".
+    lesson : path, optional
+        The folder or the file of a lesson that takes the place of the one that comes with the page.
 
     Raises
     ------
     CutcellError
-        There is no such audit.
+        There is no such audit, one of `frames` is no origin, or a step of the lesson is wrong.
     OSError
-        No port is free, or the address is none of this machine's.
+        No port is free, or the address does not belong to this machine.
     """
-    path = None if rig is None else Path(rig)
+    path, frames = None if rig is None else Path(rig), check_origins(frames)
     opened = None
     if pairs is not None:
         opened = OpenedAudit(pairs, load_audit(pairs))
         print(f"{len(opened.pairs):,} pairs, {len(opened.audit.keep):,} characters to keep")
+    steps = None if lesson is None else read_checked(lesson)
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)
-    if threading.current_thread() is threading.main_thread():
-        # An orderly end, so that what was uploaded is removed.
-        signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     log_to_terminal()
-    # Computing in Python gives way to the page's own thread sooner than after 5 ms.
+    # Computations in Python yield to the page's own thread earlier than after 5 ms.
     sys.setswitchinterval(0.001)
     UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
-    server = begin(path, chosen, address, opened, actors)
+    server = begin(path, chosen, address, opened, actors, frames, steps)
+    if threading.current_thread() is threading.main_thread():
+        # An orderly end removes uploaded files. Python ignores an exit within a finaliser, where
+        # the signal may arrive, so the server's loop ends the process.
+        end = server.io_loop.asyncio_loop.call_soon_threadsafe
+        signal.signal(signal.SIGTERM, lambda *_: end(sys.exit))
     if is_compiled():
         # While the browser starts.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
     else:
         compiling = start_process("warm_up")  # noqa: F841  it ends with this variable
-    # It listens from here on; printed earlier, the address might be requested too early.
+    # Printed earlier, the address could be requested before the server listens.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
     print(f"The page is at {url} (stop with Ctrl+C)", flush=True)
@@ -122,26 +134,16 @@ def begin(
     address: str = "localhost",
     opened: OpenedAudit | None = None,
     actors: Mapping[str, Actor] | None = None,
+    frames: Collection[str] = (),
+    lesson: Lesson | None = None,
     **more: Any,
 ) -> Any:
-    """Return a server of the page that listens, and whose loop is still to be started.
+    """Return a listening server of the page, whose loop is not started yet; see `serve`.
 
-    Parameters
-    ----------
-    path : Path, optional
-        The character to open; a demo when left out.
-    port : int
-    address : str
-        As in `serve`.
-    opened : OpenedAudit, optional
-        An audit whose pairs are looked at.
-    actors : mapping of str to Actor, optional
-        As in `serve`.
-    **more
-        For `panel.serve`.
+    Further arguments are those of `panel.serve`.
     """
     server = pn.serve(
-        {"/": lambda: page(path, opened, actors)},
+        {"/": lambda: page(path, opened, actors, lesson)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,
@@ -153,8 +155,8 @@ def begin(
         threaded=False,
         **{**ENDINGS, **more},
     )
-    text = guard(server._tornado, allowed_hosts(address, port), STATIC, head())
-    server.io_loop.add_callback(text.make)
+    text = guard(server._tornado, allowed_hosts(address, port), STATIC, head(), frames)
+    server.io_loop.add_callback(lambda: text.text)
     server.io_loop.add_callback(_settle, server)
     return server
 
@@ -165,18 +167,12 @@ def _warm_up(server: Any) -> None:
 
 
 def _settle(server: Any) -> None:
-    if not server.get_sessions("/"):  # their memory shall be collected
+    if not server.get_sessions("/"):  # memory of sessions must stay collectable
         settle()
 
 
 def free_port(port: int, address: str = "localhost") -> int:
-    """Return the port if it is free, else the next free one after it.
-
-    Raises
-    ------
-    OSError
-        None of the next 20 is free, or the address is none of this machine's.
-    """
+    """Return the port if it is free, else one of the next 20; raise an OSError if none is."""
     host = "127.0.0.1" if address == "localhost" else address
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     for candidate in [port] if port == 0 else range(port, min(port + PORTS_TRIED, 65536)):
@@ -193,19 +189,19 @@ def free_port(port: int, address: str = "localhost") -> int:
 
 
 def allowed_hosts(address: str, port: int) -> list[str]:
-    """Return the hosts, with their port, under which a browser may know this server."""
+    """Return the hosts, with their port, that browsers may use for this server."""
     names = ["localhost", "127.0.0.1", *(["[::1]"] if ":" in address else [])]
     if address not in LOCAL:
         hosts = {in_brackets(address), socket.gethostname(), socket.getfqdn()}
         if address in ("0.0.0.0", "::"):
             hosts |= {in_brackets(str(info[4][0])) for info in _own_addresses()}
         names += sorted(hosts - {*names})
-    # Bokeh's own setting, for names that only a person can know: of a proxy, or a tunnel.
+    # Bokeh's own setting, for names of a proxy or a tunnel.
     return [*(f"{name}:{port}".lower() for name in names), *settings.allowed_ws_origin()]
 
 
 def _own_addresses() -> list[Any]:
-    with suppress(OSError):  # a machine that does not know its own name
+    with suppress(OSError):  # a machine that cannot resolve its own name
         return socket.getaddrinfo(socket.gethostname(), None)
     return []
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.editing.symmetry import joint_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig
 from cutcell.rig.checks import as_array, check_flag, check_integer, shown
 
-from .mirror import find_joint_mirror
 from .stroke import Brush, PaintSurface, Stroke
 
 MAX_INFLUENCES = 2**15
@@ -58,7 +58,7 @@ def paint_weights(
     -------
     array, shape (n, j)
         Rows that the brush did not touch are as they were; others sum to one. A vertex that
-        follows no other joint keeps the weight that is subtracted: nobody would take it.
+        follows no other joint keeps its weight, since no joint could receive it.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def paint_weights(
         raise ParameterError(f"stroke must be a list of vertices, not {shown(stroke)}")
     if passed.min() < 0 or passed.max() >= count:
         raise ParameterError(f"stroke must hold vertices from 0 to {count - 1}")
-    mirror = find_joint_mirror(rig) if check_flag("mirrored", mirrored) else None
+    mirror = joint_mirror(rig) if check_flag("mirrored", mirrored) else None
     if max_influences is not None:
         check_integer("max_influences", max_influences, 1, MAX_INFLUENCES)
     if within is not None:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.errors import SkeletonError
+from cutcell.graph.sections import plane_outline
 from cutcell.graph.winding import winding_number
 from cutcell.rig import Rig, Skeleton
 from cutcell.rig.checks import check_integer
@@ -48,7 +49,10 @@ def cross_section_centre(rig: Rig, joint: int) -> NDArray[np.float64]:
     place, out = rig.skeleton.joints[joint], _along(rig.skeleton, joint)
     side = np.cross(out, np.eye(3)[np.abs(out).argmin()])
     plane = np.stack([side, np.cross(out, side)]) / np.linalg.norm(side)
-    start, end = _section(rig.mesh.vertices - place, rig.mesh.faces, out, plane)
+    outline = plane_outline(rig.mesh.vertices - place, rig.mesh.faces, np.zeros(3), out)
+    # Not by a matrix product: segments that share an end must have the same numbers for it, so
+    # that nothing passes between them.
+    start, end = np.stack([(outline * axis).sum(axis=2) for axis in plane], axis=2).swapaxes(0, 1)
     middle, most = np.zeros(2), np.inf
     inside = bool(winding_number(rig.mesh, place[None])[0] > 0.5)
     for _ in range(ROUNDS):
@@ -80,38 +84,6 @@ def _along(skeleton: Skeleton, joint: int) -> NDArray[np.float64]:
     if length > 1e-3:
         return np.asarray(total / length)
     return np.asarray(units[0]) if units else np.array([0.0, 1.0, 0.0])
-
-
-def _section(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    out: NDArray[np.float64],
-    plane: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Cut faces (m, 3) by the plane through 0; return segments in it, (s, 2) each.
-
-    Segments that share an end have the same numbers for it, so that nothing passes between them.
-    """
-    above = (points @ out)[faces]
-    crossed = np.flatnonzero((above.min(axis=1) < 0) & (above.max(axis=1) >= 0))
-    corners, above = points[faces[crossed]], above[crossed]
-    # Rolled so that the first corner is alone on its side.
-    sides = above >= 0
-    alone = np.where(sides.sum(axis=1) == 1, sides.argmax(axis=1), (~sides).argmax(axis=1))
-    order = (alone[:, None] + np.arange(3)) % 3
-    corners = np.take_along_axis(corners, order[..., None], axis=1)
-    above = np.take_along_axis(above, order, axis=1)
-    # Both faces of an edge begin at its upper end.
-    from_alone = above[:, :1] >= 0
-    upper, lower = (
-        np.where(choice[..., None], corners[:, :1], corners[:, 1:])
-        for choice in (from_alone, ~from_alone)
-    )
-    high = np.where(from_alone, above[:, :1], above[:, 1:])
-    share = high / np.abs(above[:, :1] - above[:, 1:])
-    crossing = upper + share[..., None] * (lower - upper)
-    flat = np.stack([(crossing * axis).sum(axis=2) for axis in plane], axis=2)
-    return flat[:, 0], flat[:, 1]
 
 
 def _visible_section(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -14,6 +14,7 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from cutcell.editing.locks import joint_index
+from cutcell.editing.selected import Selected
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import ParameterError
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
@@ -78,6 +79,10 @@ class PaintSurface:
     def __init__(self, mesh: TriangleMesh) -> None:
         self.reach = SurfaceReach.of(mesh)
 
+    def prepare(self) -> None:
+        """Compute what strokes need, so that the first one does not wait for it."""
+        _ = self._used, self.diffusion
+
     @cached_property
     def _used(self) -> tuple[NDArray[np.int32], Any]:
         """The welded vertices that faces have, and a tree of them."""
@@ -125,27 +130,21 @@ class Stroke:
         locked: Sequence[int | str] = (),
         max_influences: int | None = None,
         within: NDArray[np.bool_] | None = None,
+        locked_weights: NDArray[np.bool_] | None = None,
     ) -> None:
         self._within = np.ones(len(weights), bool) if within is None else within
         self._surface, self._rig, self._weights, self._brush = surface, rig, weights, brush
-        self._mirror, self._most = mirror, max_influences
-        self._locked = np.zeros(len(rig.skeleton.names), bool)
-        self._locked[[joint_index(rig.skeleton, one) for one in locked]] = True
+        self._mirror = mirror
+        none = np.empty(0, np.intp)
+        self._all = Selected(rig, weights, none, locked, max_influences, locked_weights)
         joint = joint_index(rig.skeleton, joint)
         partner = -1 if mirror is None else int(mirror.joint[joint])
         self._joints = [joint] if partner < 0 else [joint, partner]
         if brush.mode != "smooth":
             for one in self._joints:
-                self._check(one)
+                self._all.joint(one)
         sides = 1 if mirror is None or (partner < 0 and brush.mode != "smooth") else 2
         self._distance = np.full((sides, len(surface.reach.points)), np.inf)
-
-    def _check(self, joint: int) -> None:
-        name = self._rig.skeleton.names[joint]
-        if self._locked[joint]:
-            raise ParameterError(f'"{name}" is locked; unlock it to paint its weight')
-        if not self._rig.skeleton.deform[joint]:
-            raise ParameterError(f'"{name}" carries no weight; let it, to paint its weight')
 
     def pass_over(self, corners: NDArray[np.integer], shares: NDArray[np.float64]) -> None:
         """Lead the brush over points of the surface.
@@ -187,65 +186,40 @@ class Stroke:
         covered = brush.strength * np.square(inside)
         if not len(vertices):
             return vertices, self._weights[vertices]
-        rows, cover = self._weights[vertices], covered[:, index[vertices]]
-        can = np.ones(rows.shape, bool)
-        if self._rig.allowed is not None:
-            can = self._rig.allowed[vertices]
+        selected, cover = replace(self._all, vertices=vertices), covered[:, index[vertices]]
+        rows = selected.rows
         if brush.mode == "smooth":
             goal = self._diffused(covered.max(axis=0), vertices)
             moved = rows + cover.max(axis=0)[:, None] * (goal - rows)
         elif len(cover) == 2 and self._joints[0] == self._joints[-1]:
-            moved = rows + self._weight_delta(rows, cover.max(axis=0), self._joints[0], can)
+            moved = rows + self._weight_delta(selected, cover.max(axis=0), self._joints[0])
         else:
             changes = zip(self._joints, cover, strict=True)
-            moved = rows + sum(
-                self._weight_delta(rows, part, joint, can) for joint, part in changes
-            )
-        return vertices, self._renormalise(rows, np.where(can, moved, 0.0))
+            moved = rows + sum(self._weight_delta(selected, part, joint) for joint, part in changes)
+        named = [] if brush.mode == "smooth" else self._joints
+        return vertices, selected.finished(moved, named)
+
+    def check_unlocked(self) -> None:
+        """Raise an error if the joint is locked at all vertices that were touched."""
+        if self._brush.mode != "smooth":
+            replace(self._all, vertices=self.touched()).check_unlocked(*self._joints)
 
     def _weight_delta(
-        self, rows: NDArray[np.float64], cover: NDArray[np.float64], joint: int, can: NDArray
+        self, selected: Selected, cover: NDArray[np.float64], joint: int
     ) -> NDArray[np.float64]:
         """Return the change of a joint's weight, and the opposite changes of unlocked joints."""
-        others = np.where(self._locked, 0.0, rows)
+        rows = selected.rows
+        others = np.where(selected.stays, 0.0, rows)
         weight, others[:, joint] = rows[:, joint], 0.0
         rest = others.sum(axis=1)
         step = {
             "add": cover, "subtract": -cover, "replace": cover * (self._brush.value - weight),
         }[self._brush.mode]  # fmt: skip
-        step = np.where(can[:, joint] & (rest > 0), np.clip(step, -weight, rest), 0.0)
+        can = selected.takes(joint) & (rest > 0)
+        step = np.where(can, np.clip(step, -weight, rest), 0.0)
         change = others * np.divide(-step, rest, out=np.zeros_like(rest), where=rest > 0)[:, None]
         change[:, joint] = step
         return change
-
-    def _renormalise(
-        self, before: NDArray[np.float64], rows: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Share the rest among joints that are neither locked nor painted, and not too many."""
-        locked = np.where(self._locked, before, 0.0)
-        free = np.where(self._locked, 0.0, np.maximum(rows, 0.0))
-        if self._most is not None and ((free > 0) | (locked > 0)).sum(axis=1).max() > self._most:
-            free = self._strongest(free, self._most - (locked > 0).sum(axis=1))
-        rest = np.maximum(before.sum(axis=1) - locked.sum(axis=1), 0)
-        painted = np.zeros_like(free)
-        if self._brush.mode != "smooth":
-            painted[:, self._joints] = free[:, self._joints]
-        others, left = free - painted, rest - painted.sum(axis=1)
-        fits = (others.sum(axis=1) > 0) & (left >= 0)
-        whole = locked + np.where(
-            fits[:, None], painted + _scaled(others, left), _scaled(free, rest)
-        )
-        return np.where(free.any(axis=1, keepdims=True), whole, before)
-
-    def _strongest(
-        self, free: NDArray[np.float64], count: NDArray[np.integer]
-    ) -> NDArray[np.float64]:
-        """Keep the `count` largest weights of each row, the painted joints first."""
-        order = free.copy()
-        if self._brush.mode != "smooth":
-            order[:, self._joints] += order[:, self._joints] > 0
-        rank = np.argsort(np.argsort(-order, axis=1, kind="stable"), axis=1, kind="stable")
-        return np.where(rank < count[:, None], free, 0.0)
 
     def _diffused(
         self, cover: NDArray[np.float64], vertices: NDArray[np.intp]
@@ -268,10 +242,3 @@ class Stroke:
         goal = np.zeros((len(inner), start.shape[1]))
         goal[:, used] = splu(system).solve(right)
         return goal[np.searchsorted(inner, reach.index[vertices])]
-
-
-def _scaled(rows: NDArray[np.float64], sums: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale rows to given sums; empty rows stay empty."""
-    total = rows.sum(axis=1)
-    factor: NDArray[np.float64] = np.divide(sums, total, out=np.zeros_like(total), where=total > 0)
-    return rows * factor[:, None]

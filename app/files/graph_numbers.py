@@ -17,11 +17,7 @@ from .table_export import settings_of
 def save_graph(path: Path, graph: CutCellGraph) -> None:
     """Write a graph's nodes and edges; positions and lengths are in the file's units.
 
-    Parameters
-    ----------
-    path : Path
-        Ends in ".zip", for "nodes.csv", "edges.csv" and "settings.json" in it, or in ".npz".
-    graph : CutCellGraph
+    A ".zip" contains "nodes.csv", "edges.csv" and "settings.json"; else the path ends in ".npz".
     """
     places = graph.lattice.to_file(graph.nodes)
     lengths = graph.lengths * graph.lattice.size

@@ -1,4 +1,4 @@
-"""Files as characters: which of a group is opened, and how it is read."""
+"""Reading of files as characters."""
 
 import functools
 from collections.abc import Callable
@@ -7,42 +7,30 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
+from cutcell.editing.stored import with_base
 from cutcell.errors import FileError
 from cutcell.io.files import naming
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
-from ..jobs.processes import MAX_SECONDS, in_process
+from ..derive.processes import MAX_SECONDS, in_process
 
-IMAGES = {
-    ".png",
-    ".jpg",
-    ".jpeg",
-    ".webp",
-    ".bmp",
-    ".tga",
-    ".tif",
-    ".tiff",
-    ".dds",
-    ".psd",
-    ".ktx2",
-}
-COMPANIONS = {".txt", ".json", ".mtl", ".bin", *IMAGES}
-"""Files that come along with the one that is opened."""
-
+IMAGES = ".png .jpg .jpeg .webp .bmp .tga .tif .tiff .dds .psd .ktx2"
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", *IMAGES.split()}
+"""Endings of files that belong to the one that is opened."""
 
 ENDED = "reading it came to a sudden end; the file is damaged, or needs more memory than there is"
 
 
 @functools.cache
 def demo_rig(id: str) -> Rig:
-    """Return a demo character; it is read once, and nothing can write to it."""
+    """Return a demo character, which is read once and read-only."""
     return cutcell.load(demo_path(id))
 
 
 def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
-    """Load a character in another process; see `jobs.processes.in_process`."""
+    """Load a character in another process; see `in_process`."""
     with naming(path):
         return frozen(
             in_process(load_with_materials, path, check=check, ended=ENDED, limit=MAX_SECONDS)
@@ -50,9 +38,9 @@ def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
 
 
 def load_with_materials(path: Path) -> Rig:
-    """Load a character, and look which materials it has: some formats read them when asked."""
-    rig = cutcell.load(path)
-    has_materials(rig)  # the page asks as soon as it shows it, and must not wait then
+    """Load a character with its materials, and the weights below the layers of its file."""
+    rig = with_base(cutcell.load(path))
+    has_materials(rig)  # the page must not wait for it later
     return rig
 
 
@@ -67,13 +55,7 @@ def frozen(rig: Rig) -> Rig:
 
 
 def main_file(paths: list[Path]) -> Path:
-    """Return the one file of a dropped group that is to be opened.
-
-    Raises
-    ------
-    FileError
-        There is none, or more than one.
-    """
+    """Return the one character of a dropped group; raise an error for none or several."""
     characters = [path for path in paths if path.suffix.lower() not in COMPANIONS]
     names = ", ".join(path.name for path in paths)
     if not characters:

@@ -1,11 +1,11 @@
-"""Files from the browser: received in pieces, straight to where they are kept."""
+"""Files from the browser, received in pieces and written to the upload cache."""
 
 from collections.abc import Callable
 from typing import Any
 
 from cutcell.errors import CutcellError, FileError
 
-from ..jobs.messages import FULL
+from ..server.messages import FULL
 from .upload_cache import Group, UploadCache
 
 MAX_UPLOAD = 200 * 1024 * 1024
@@ -14,22 +14,13 @@ MAX_UPLOAD = 200 * 1024 * 1024
 MAX_FILES = 64
 
 NAME_BYTES = 200
-"""Longest name of a file: most systems take 255, and exports of the file have longer names."""
+"""Longest name of a file: most systems allow 255, and exports of the file have longer names."""
 
 
 class Receiver:
-    """Takes the files that one browser sends.
+    """Receives the files of one browser into a cache, as those of one page, their owner.
 
-    Parameters
-    ----------
-    cache : UploadCache
-        Where they go.
-    owner : object
-        The page that they count for.
-    received : callable
-        Called with a group when all of it is there.
-    refused : callable
-        Called with the error when a group is not taken.
+    It calls `received` with each complete group, and `refused` with the error of any other.
     """
 
     def __init__(
@@ -48,10 +39,7 @@ class Receiver:
         self._written = 0
 
     def answer(self, message: dict[str, Any]) -> dict[str, Any] | None:
-        """Handle one message; return what to answer, None if it is no concern of ours.
-
-        The browser waits for the answer: there is one whatever goes wrong.
-        """
+        """Handle a message and return the answer, also after an error; None for other messages."""
         act = {
             "upload-begin": self._begin,
             "upload-piece": self._piece,
@@ -70,7 +58,7 @@ class Receiver:
         return {"ok": True}
 
     def drop(self) -> None:
-        """Forget what came of a group."""
+        """Remove an incomplete group."""
         group, self._group = self._group, None
         if group is not None:
             self._cache.drop(group)
@@ -114,7 +102,7 @@ class Receiver:
 
 
 def _announced(files: list[dict[str, Any]]) -> tuple[list[str], list[int]]:
-    """Return the names and sizes of the files that are to come."""
+    """Return the names and sizes of announced files."""
     if not 0 < len(files) <= MAX_FILES:
         raise FileError(f"{len(files)} files came at once; 1 to {MAX_FILES} can be opened")
     names = [safe_name(str(file["name"])) for file in files]
@@ -146,5 +134,5 @@ def safe_name(name: str) -> str:
     """Return the last part of a name from the browser, fit to be a file's name here."""
     last = name.replace("\\", "/").rsplit("/", 1)[-1]
     printable = "".join(c for c in last if c.isprintable() and c not in '<>:"|?*').strip(". ")
-    # Systems count bytes, and what matters of a long name is its end.
+    # Systems count bytes; a long name keeps its end.
     return printable.encode()[-NAME_BYTES:].decode(errors="ignore").strip(". ") or "file"

@@ -1,6 +1,6 @@
-"""Where a server keeps files: one folder, locked for as long as the server lives.
+"""Storage of a server's files: one folder, locked for as long as the server lives.
 
-A server that was killed leaves its folder behind. The next one, and any that runs, removes it.
+Other servers remove the folder of a server that was killed.
 """
 
 import os
@@ -17,19 +17,18 @@ PREFIX = "cutcell-"
 LOCK = "lock"
 
 NEW_SECONDS = 60.0
-"""A folder this young may belong to a server that has yet to lock it."""
+"""Age up to which a folder may belong to a server that has not locked it yet."""
 
 UNKNOWN_SECONDS = 24 * 3600.0
-"""A folder without a lock, of a picture being drawn or of an older version, is left this long."""
+"""Age up to which a folder without a lock is kept: a picture in progress, or an older version."""
 
 
 class Storage:
-    """Folders for files, all inside one that ends with the server.
+    """Folders for files, inside one that ends with the server; its parent is the temporary folder.
 
     Parameters
     ----------
     parent : Path, optional
-        Where that one is made; the system's folder for temporary files when left out.
     """
 
     def __init__(self, parent: Path | None = None) -> None:
@@ -40,20 +39,14 @@ class Storage:
 
     @property
     def parent(self) -> Path:
-        """Where the server's folder is."""
+        """The folder that contains the server's folder."""
         return self._parent or Path(tempfile.gettempdir())
 
     def make(self) -> Path:
-        """Make a new, empty folder; return its path.
-
-        Raises
-        ------
-        OSError
-            The disk is full, or nothing may be written there.
-        """
+        """Make a new, empty folder; return its path."""
         with self._guard:
             if self._root is None or not (self._root / LOCK).is_file():
-                self._begin()  # at first, and where someone has cleaned up
+                self._begin()  # at first, and after someone has removed it
             return Path(tempfile.mkdtemp(dir=self._root))
 
     def free(self) -> int:
@@ -65,10 +58,10 @@ class Storage:
         uid = getattr(os, "getuid", lambda: None)()
         with suppress(OSError), os.scandir(self.parent) as entries:
             for entry in entries:
-                with suppress(OSError):  # gone in the meantime, or not ours to look into
+                with suppress(OSError):  # removed in the meantime, or not readable
                     if not entry.name.startswith(PREFIX) or not entry.is_dir(follow_symlinks=False):
                         continue
-                    # In a folder that all may write to, others may have set up anything.
+                    # Other users can write to the temporary folder, too.
                     if uid is None or entry.stat(follow_symlinks=False).st_uid == uid:
                         _remove_if_left(Path(entry.path))
 
@@ -106,7 +99,7 @@ def _age(path: Path) -> float:
 
 
 def _locked(file: IO[bytes]) -> bool:
-    """Lock a file until it is closed, or its process ends; False where another one has it."""
+    """Lock a file until it is closed or its process ends; False if another process locks it."""
     try:
         if sys.platform == "win32":
             import msvcrt

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell import __version__
 from cutcell.binding import Binding
+from cutcell.editing.stored import ABOUT
 from cutcell.errors import FileError, ParameterError
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
@@ -22,11 +22,7 @@ from cutcell.runtime.writing import check_place, write_all
 FORMULA = tuple("=+-@\t\r＝＋－＠")
 """Prefixes that start a formula in a spreadsheet."""
 DIGITS = 7
-"""Significant digits of a CSV's numbers: what 32 bits hold."""
-
-
-ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
-"""Source of the numbers of a file, and their unit."""
+"""Significant digits of a CSV's numbers, as of 32 bits."""
 
 
 def settings_of(result: Binding | CutCellGraph) -> dict[str, Any]:
@@ -114,11 +110,6 @@ def _packed_csv(rig: Rig, arrays: dict[str, NDArray], settings: Mapping[str, Any
 
 
 def spreadsheet_cell(name: str) -> str:
-    """Return a name as a cell of a table; one that looks like a formula begins with an apostrophe.
-
-    References
-    ----------
-    OWASP, "CSV Injection".
-    """
-    shown = printable(name)
-    return f"'{shown}" if name.lstrip().startswith(FORMULA) or name.startswith(FORMULA) else shown
+    """Return a name as a cell; formulas get an apostrophe (OWASP, "CSV Injection")."""
+    is_formula = name.lstrip().startswith(FORMULA) or name.startswith(FORMULA)
+    return f"'{printable(name)}" if is_formula else printable(name)

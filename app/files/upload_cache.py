@@ -1,7 +1,6 @@
 """Uploaded files: stored while a page uses them, and some time longer for returning visitors.
 
-All of them together have a quota, and so have those of one page. Files that are no longer in use
-are removed for new ones.
+There are quotas for one page and for all pages. Unused files are removed for new ones.
 """
 
 import atexit
@@ -18,13 +17,13 @@ from cutcell.errors import FileError
 from .storage import Storage
 
 KEPT_SECONDS = 15 * 60.0
-"""How long files stay when no page uses them any more."""
+"""Time that files are kept after their last use."""
 
 MB = 2**20
 MAX_BYTES = 2048 * MB
 """Quota of all uploaded files together."""
 MAX_OF_A_PAGE = 500 * MB
-"""Quota of the files of one page that still exist."""
+"""Quota of the files of one page."""
 SPARE_BYTES = 256 * MB
 """Space that uploads leave free on the disk."""
 
@@ -33,21 +32,20 @@ SWEEP_SECONDS = 60.0
 
 @dataclass(eq=False)
 class Group:
-    """Files that belong together.
+    """Files that belong together, by a key that cannot be guessed.
 
     Parameters
     ----------
-    key : str
-        Cannot be guessed.
-    folder : Path
     size : int
-        Bytes, of all of them, as they were announced.
+        Bytes of all files, as announced.
     owner : object
-        The page that sends them.
+        The page that sent them.
     users : int
-        Pages on which their character stands, or is about to.
+        Number of pages on which their character is open, or is being opened.
     listed : int
-        Open pages on which it can be chosen again. It waits for that, but makes way for others.
+        Number of open pages that list it. It is kept for them unless others need the space.
+    left : float
+        Time of its last use.
     """
 
     key: str
@@ -61,14 +59,7 @@ class Group:
 
 
 class UploadCache:
-    """Groups of uploaded files.
-
-    Parameters
-    ----------
-    storage : Storage, optional
-    seconds : float
-        How long a group stays when no page uses it any more.
-    """
+    """Groups of uploaded files, which are kept for some seconds after their last use."""
 
     def __init__(self, storage: Storage | None = None, seconds: float = KEPT_SECONDS) -> None:
         self.storage = storage or Storage()
@@ -77,16 +68,7 @@ class UploadCache:
         self._groups: dict[str, Group] = {}
 
     def begin(self, size: int, owner: object) -> Group:
-        """Free storage for a group of files, and make its folder; it is in use.
-
-        Raises
-        ------
-        FileError
-            The files, with those that are there, are more than a page or the server may hold,
-            or more than fits on the disk.
-        OSError
-            No folder can be made.
-        """
+        """Return a new group in use; raise a `FileError` if it exceeds a quota or the disk."""
         with self._lock:
             self._sweep()
             self._check_page(size, owner)
@@ -96,12 +78,12 @@ class UploadCache:
             return group
 
     def drop(self, group: Group) -> None:
-        """Remove a group of files that did not arrive."""
+        """Remove an incomplete group."""
         with self._lock:
             self._remove(group)
 
     def take(self, key: str) -> list[Path] | None:
-        """Use a group of files; None where it is not kept any more."""
+        """Use a group and return its files; None if it is no longer kept."""
         with self._lock:
             self._sweep()
             group = self._groups.get(key)
@@ -111,7 +93,7 @@ class UploadCache:
             return group.paths
 
     def leave(self, key: str) -> None:
-        """Use a group of files no longer; it stays for a while."""
+        """Stop using a group, which is kept for a while."""
         with self._lock:
             group = self._groups.get(key)
             if group is not None:
@@ -120,7 +102,7 @@ class UploadCache:
             self._sweep()
 
     def list(self, key: str, count: int = 1) -> None:
-        """Note that one more page lists a group of files; with -1, that one does no longer."""
+        """Add to the number of pages that list a group."""
         with self._lock:
             group = self._groups.get(key)
             if group is not None:
@@ -128,18 +110,18 @@ class UploadCache:
                 group.left = time.monotonic()
 
     def has(self, key: str) -> bool:
-        """Whether a group of files is still kept."""
+        """Return whether a group is still kept."""
         with self._lock:
             return key in self._groups
 
     def sweep(self) -> None:
-        """Remove what was left long ago, here and by servers that ended."""
+        """Remove old unused groups, and folders of servers that have ended."""
         with self._lock:
             self._sweep()
         self.storage.sweep()
 
     def sweep_by_the_clock(self) -> None:
-        """Sweep now, and once a minute for as long as the process lives."""
+        """Sweep now and once a minute."""
 
         def sweep() -> None:
             while True:
@@ -174,7 +156,7 @@ class UploadCache:
                 f"{_mb(used)} of uploads are in use, of at most {_mb(MAX_BYTES)}; try again later"
             )
         if self.storage.free() - size < SPARE_BYTES:
-            self._make_room(MAX_BYTES, MAX_BYTES)  # whatever nobody uses
+            self._make_room(MAX_BYTES, MAX_BYTES)  # all unused files
         free = self.storage.free()
         if free - size < SPARE_BYTES:
             raise FileError(
@@ -208,16 +190,12 @@ class UploadCache:
 class PageUploads:
     """The uploaded files that one page uses.
 
-    Parameters
-    ----------
-    cache : UploadCache
-
     Attributes
     ----------
     key : str
-        Key of the open character; empty where it was not uploaded.
+        Key of the open character; empty if it was not uploaded.
     listed : dict of str to str
-        The keys of the characters that stood there, and what they are called, in order.
+        Keys and names of the characters that were opened, in order.
     """
 
     def __init__(self, cache: UploadCache) -> None:
@@ -232,7 +210,7 @@ class PageUploads:
         self._in_use.add(key)
 
     def take(self, key: str) -> list[Path] | None:
-        """Use a group of files; None where it is not kept any more."""
+        """Use a group and return its files; None if it is no longer kept."""
         if key in self._in_use:
             self.cache.leave(key)
         paths = self.cache.take(key)
@@ -241,10 +219,7 @@ class PageUploads:
         return paths
 
     def stay(self, key: str, name: str = "") -> None:
-        """Use the files of the open character and no others; "" for none.
-
-        It can be chosen again by its name, if it has one.
-        """
+        """Use the files of the open character and no others; list it by its name, if it has one."""
         self.key = key
         if key and name and key not in self.listed:
             self.listed[key] = name
@@ -259,15 +234,15 @@ class PageUploads:
             self.cache.leave(key)
 
     def offered(self) -> dict[str, str]:
-        """Return what is `listed` and still kept."""
+        """Return the listed characters whose files are still kept."""
         return {key: name for key, name in self.listed.items() if self.cache.has(key)}
 
     def when_closed(self, act: Callable[[], None]) -> None:
-        """Do something when the page is closed."""
+        """Call a function when the page is closed."""
         self._closing.append(act)
 
     def close(self) -> None:
-        """Release uploaded files, and those that are still being sent."""
+        """Release all files, also incomplete ones."""
         self.stay("")
         for key in self.listed:
             self.cache.list(key, -1)
@@ -281,5 +256,5 @@ def _mb(size: int) -> str:
 
 
 UPLOADS = UploadCache()
-"""That of this server."""
+"""The cache of this server."""
 atexit.register(UPLOADS.close)

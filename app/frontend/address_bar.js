@@ -5,15 +5,19 @@ const REST = 500  // milliseconds
 
 export class AddressBar {
   constructor({history, location, setTimeout, clearTimeout}) {
-    Object.assign(this, {history, location, hasAddress: false, waiting: null, resting: null})
+    this.history = history
+    this.location = location
+    this.hasAddress = false
     this.rest = () => { this.resting = setTimeout(() => this.rested(), REST) }
     this.stop = () => { clearTimeout(this.resting); this.resting = null; this.waiting = null }
+    this.stop()
   }
 
   // Writes an address: now, or half a second after the last change. Another character or another
   // step is a new page: the browser's Back leads to the one before.
   put(address) {
-    const isNew = this.hasAddress && pageOf(address) !== pageOf(this.waiting ?? this.location.search)
+    const before = this.waiting ?? this.location.search
+    const isNew = this.hasAddress && pageOf(address) !== pageOf(before)
     if (isNew) {
       this.rested()
       this.write("pushState", address)
@@ -30,6 +34,11 @@ export class AddressBar {
     if (address !== null) { this.write("replaceState", address) }
   }
 
+  // The last one is written.
+  remove() {
+    this.rested()
+  }
+
   write(how, address) {
     this.stop()
     try {
@@ -42,7 +51,7 @@ export class AddressBar {
   }
 }
 
-// What the browser's Back returns to: a character, and a step of the tour.
+// What the browser's Back returns to: a character, and a step of the lesson.
 function pageOf(query) {
   const entries = new URLSearchParams(query)
   return `${entries.get("rig")} ${entries.get("step")}`

@@ -1,10 +1,14 @@
 // The animation of a wavefront: all up to the front is coloured, and the front moves on.
 
+import {eachFrame} from "./frames.js"
+
 export class Animation {
+  /** @param {SceneView} view */
   constructor(view) {
     this.view = view
     this.front = null
     this.playing = null
+    this.stop = () => {}
   }
 
   set(front) {
@@ -21,22 +25,18 @@ export class Animation {
   }
 
   play(animation) {
-    cancelAnimationFrame(this.ticking)
+    this.stop()
     if (this.playing && !animation) { this.tell() }
     this.playing = animation
-    let last = null
-    const step = (now) => {
-      if (!this.playing || this.view.gone) { return }
-      const moved = last === null ? 0 : Math.min(now - last, 100) / 1000 / animation.seconds
-      last = now
-      const at = (this.front ?? animation.end) + moved * animation.end
-      this.set(at >= animation.end ? 0 : at)
-      this.ticking = requestAnimationFrame(step)
-    }
-    if (animation) { this.ticking = requestAnimationFrame(step) }
+    if (!animation) { return }
+    const {end, seconds} = animation
+    this.stop = eachFrame((passed) => {
+      const at = (this.front ?? end) + passed / seconds * end
+      this.set(at >= end ? 0 : at)
+    })
   }
 
   remove() {
-    cancelAnimationFrame(this.ticking)
+    this.stop()
   }
 }

@@ -1,7 +1,7 @@
 // The brush that paints weights: a ring on the surface, and strokes that are sent to the server,
 // which answers with the colours of what they touched.
 
-import {plainList} from "./arrays.js"
+import {onPage, within} from "./elements.js"
 import {line, make} from "./drag_handle.js"
 import {across, along, cross, dot, minus, reflected} from "./vectors.js"
 
@@ -11,9 +11,18 @@ const PER_RADIUS = 4  // points of a stroke in a radius
 const MOST = 60  // points from one event of the pointer
 
 export class PaintBrush {
-  // `bodyAt` tells what lies at a place of the canvas, `handOver` lets the camera have a pointer.
+  /**
+   * `bodyAt` tells what lies at a place of the canvas, `handOver` lets the camera have a pointer.
+   * @param {Overlay} overlay @param {Renderer} renderer
+   * @param {{tell: Tell, [act: string]: any}} hears
+   */
   constructor(overlay, renderer, {bodyAt, handOver, changed, tell}) {
-    Object.assign(this, {overlay, renderer, bodyAt, handOver, changed, tell})
+    this.overlay = overlay
+    this.renderer = renderer
+    this.bodyAt = bodyAt
+    this.handOver = handOver
+    this.changed = changed
+    this.tell = tell
     this.svg = make("svg", "handle brush-ring", overlay.root, {"aria-hidden": "true"})
     this.rings = ["halo", "ring", "ring other"].map((name) => make("path", name, this.svg))
     const on = (type, act) => overlay.canvas.addEventListener(type, (e) => act(e), {capture: true})
@@ -28,7 +37,7 @@ export class PaintBrush {
 
   // `part`: the radius in the scene, and the plane that mirrors it.
   show(part) {
-    this.part = part && {radius: part.radius, mirror: part.mirror && plainList(part.mirror)}
+    this.part = part && {radius: part.radius, mirror: part.mirror && [...part.mirror]}
     this.overlay.showPainting(Boolean(part))
     if (!part) {
       this.stroke = null
@@ -41,13 +50,8 @@ export class PaintBrush {
     return Boolean(this.stroke)
   }
 
-  place(e) {
-    const box = this.overlay.canvas.getBoundingClientRect()
-    return [e.clientX - box.left, e.clientY - box.top]
-  }
-
   hitOf(e) {
-    return this.bodyAt(...this.place(e))
+    return this.bodyAt(...within(this.overlay.canvas, e))
   }
 
   take(e) {
@@ -55,8 +59,7 @@ export class PaintBrush {
     if (this.stroke) {  // a second finger: both move the camera
       const {pointer, x, y} = this.stroke
       this.cancel({pointerId: pointer})
-      const box = this.overlay.canvas.getBoundingClientRect()
-      this.handOver(pointer, [x + box.left, y + box.top])
+      this.handOver(pointer, onPage(this.overlay.canvas, [x, y]))
       return
     }
     const hit = e.button || e.altKey ? null : this.hitOf(e)
@@ -65,7 +68,7 @@ export class PaintBrush {
     e.preventDefault()
     this.overlay.canvas.focus({preventScroll: true})
     this.overlay.canvas.setPointerCapture(e.pointerId)
-    const [x, y] = this.place(e)
+    const [x, y] = within(this.overlay.canvas, e)
     const mode = e.shiftKey ? "smooth" : e.ctrlKey || e.metaKey ? "subtract" : null
     this.stroke = {pointer: e.pointerId, x, y, points: [], first: true, mode}
     this.overlay.showBone(null)
@@ -83,7 +86,7 @@ export class PaintBrush {
     }
     if (e.pointerId !== stroke.pointer) { return }
     e.stopImmediatePropagation()
-    const [x, y] = this.place(e)
+    const [x, y] = within(this.overlay.canvas, e)
     let hit = null
     for (const [a, b] of between([stroke.x, stroke.y], [x, y], this.spacing)) {
       hit = this.bodyAt(a, b)
@@ -94,7 +97,7 @@ export class PaintBrush {
     this.say()
   }
 
-  // By keys: a stroke of one point, where the cross is.
+  /** By keys: a stroke of one point, where the cross is. @param {number[]} at */
   dab([x, y]) {
     const hit = this.stroke ? null : this.bodyAt(x, y)
     if (!hit) { return }
@@ -153,7 +156,8 @@ export class PaintBrush {
   }
 
   aim(hit) {
-    this.aimed = hit && {at: hit.at, normal: normalOf(hit.actor.triangles, hit.actor.posed(), hit.triangle)}
+    const normal = (of) => normalOf(of.actor.triangles, of.actor.posed(), of.triangle)
+    this.aimed = hit && {at: hit.at, normal: normal(hit)}
     this.changed()
   }
 
@@ -169,7 +173,8 @@ export class PaintBrush {
     }
     const [halo, own, other] = this.rings
     for (const path of [halo, own]) { path.setAttribute("d", outline(ring)) }
-    other.setAttribute("d", part.mirror ? outline(ring.map((point) => reflected(point, part.mirror))) : "")
+    const mirrored = part.mirror ? ring.map((point) => reflected(point, part.mirror)) : null
+    other.setAttribute("d", mirrored ? outline(mirrored) : "")
   }
 }
 

@@ -1,34 +1,49 @@
 // Colours of an actor's points on the graphics card: a value or a colour of each point is in
 // a texture. New ones are an upload of just these numbers; no buffer is built again.
 
+import {replaced} from "./shape.js"
+import {FRAGMENT} from "./vtk_private.js"
+
 const TABLE_UNIT = 13  // vtk.js takes the first units
 const POINT_UNIT = 14
 export const POINTS_WIDE = 2048
-const QUIET = [201, 206, 214]  // the body's own grey
+export const QUIET = [201, 206, 214]  // the body's own grey
 export const ALL = 1e38
 
 export class Colours {
+  /** @param {GL} gl */
   constructor(gl) {
     this.gl = gl
     this.by = ""  // "values", "colors", or nothing
     this.front = ALL
   }
 
-  setValues(values, table, limits) {
+  setValues(values, table, limits = this.limits) {
     this.by = "values"
+    this.values = values
     this.limits = limits
     this.putPoints(values, this.gl.R32F, this.gl.RED, this.gl.FLOAT, 1)
-    this.putTable(table)
+    if (table) { this.putTable(table) }
   }
 
   setColors(colors) {
     this.by = "colors"
+    this.colors = colors
     this.putPoints(colors, this.gl.RGB8, this.gl.RGB, this.gl.UNSIGNED_BYTE, 3)
   }
 
-  putPoints(...values) {
-    this.points ??= new PointTexture(this.gl, POINT_UNIT)
-    this.points.put(...values)
+  /** Gives some points others. @param {Painted} painted */
+  repaint({vertices, colors, scalars}) {
+    if (this.by === "colors" && colors) {
+      this.setColors(replaced(this.colors, 3, vertices, colors))
+    } else if (this.by === "values" && scalars) {
+      this.setValues(replaced(this.values, 1, vertices, scalars))
+    }
+  }
+
+  putPoints(values, inside, format, type, size) {
+    this.points = this.points ?? new PointTexture(this.gl, POINT_UNIT)
+    this.points.put(values, inside, format, type, size)
   }
 
   putTable(table) {
@@ -43,7 +58,7 @@ export class Colours {
 
   // Called before the actor is drawn.
   use(program) {
-    // Values that are worked out from the pose are read from no texture.
+    // Values that are computed from the pose are not read from a texture.
     if (program.isUniformUsed("points")) {
       this.points.bind()
       program.setUniformi("points", POINT_UNIT)
@@ -66,8 +81,10 @@ export class Colours {
 
 // Some numbers of each point, in rows.
 export class PointTexture {
+  /** @param {GL} gl @param {number} unit */
   constructor(gl, unit) {
-    Object.assign(this, {gl, unit})
+    this.gl = gl
+    this.unit = unit
   }
 
   put(values, inside, format, type, size) {
@@ -96,8 +113,11 @@ export class PointTexture {
 
 // A texture of plain numbers, of a fixed size, on one unit.
 class DataTexture {
+  /** @param {GL} gl */
   constructor(gl, unit, inside, width, height, filter) {
-    Object.assign(this, {gl, unit, width})
+    this.gl = gl
+    this.unit = unit
+    this.width = width
     this.texture = gl.createTexture()
     this.bind()
     gl.texStorage2D(gl.TEXTURE_2D, 1, inside, width, height)
@@ -155,13 +175,14 @@ export function colourShader(by, apart) {
       const int width = ${POINTS_WIDE};
       ${given}`,
     fragment: [
-      ["void main()\n{", `${carried}
+      [FRAGMENT.main, `${carried}
         uniform highp sampler2D colourTable;
         uniform vec3 colourRange;
         uniform float colourFront;
         void main()\n{`],
-      ["  ambientColor = ambientColorUniform;", `${looked}\n  ambientColor = ambient < 0.9 ? shown : 0.45 * shown;`],
-      ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
+      [FRAGMENT.ambient, `${looked}
+  ambientColor = ambient < 0.9 ? shown : 0.45 * shown;`],
+      [FRAGMENT.diffuse, "  diffuseColor = shown;"],
     ],
   }
 }

@@ -1,6 +1,7 @@
 // When the server is gone: shows a message, reconnects, and restores the state from the address.
 
 import {element} from "./elements.js"
+import {onConnectionLost} from "./panel.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("connection.css")
@@ -12,10 +13,7 @@ export class Connection {
     this.overlay = overlay
     this.note = element("div", {className: "card lost", hidden: true, aria: {role: "alert"}})
     overlay.root.append(styled(), this.note)
-    const documents = window.Bokeh?.documents || []
-    this.document = documents[documents.length - 1]
-    this.lost = () => this.retry()
-    this.document?.on_event("connection_lost", this.lost)
+    this.forget = onConnectionLost(() => this.retry())
   }
 
   async retry() {
@@ -32,12 +30,12 @@ export class Connection {
       } catch { /* not there yet: try again */ }
     }
     if (this.gone) { return }
-    this.note.textContent = "The server is there again. Coming back\u00a0…"
+    this.note.textContent = "Connected again. Reloading\u00a0…"
     location.reload()
   }
 
   remove() {
     this.gone = true
-    this.document?.remove_on_event?.("connection_lost", this.lost)
+    this.forget()
   }
 }

@@ -1,6 +1,5 @@
-// The cutting plane's handles: its frame, a knob that moves it along its normal, and one that turns it.
+// The cutting plane's handles: its frame, a knob that moves it, and one that turns it.
 
-import {plainList} from "./arrays.js"
 import {DragHandle, line, make} from "./drag_handle.js"
 import {across, along, dot, minus, rotated, spanned, unit} from "./vectors.js"
 
@@ -24,30 +23,31 @@ export class CutHandles extends DragHandle {
 
   // `part`: the box that the plane crosses.
   show(part) {
-    this.box = part && part.box.map(plainList)
+    this.box = part && part.box.map((corner) => [...corner])
     if (!part) { this.drop() }
     this.svg.style.display = part ? "" : "none"
   }
 
   put(cut) {
     if (this.held) { return }
-    this.cut = cut && {origin: plainList(cut.origin), normal: plainList(cut.normal)}
+    this.cut = cut && {origin: [...cut.origin], normal: [...cut.normal]}
   }
 
   // The plane's frame, as large as the box it crosses, and where its knobs are.
   draw() {
-    if (!this.box || !this.cut || this.renderer.views.length > 1) { this.svg.style.visibility = "hidden"; return }
+    this.svg.style.visibility = "hidden"
+    if (!this.box || !this.cut || this.renderer.views.length > 1) { return }
     const {origin, normal} = this.cut
     const [u, v] = spanned(normal)
     const [a, b] = [u, v].map((way) => 0.54 * this.reach(way))
     const corner = (s, t) => along(origin, [s * a, u], [t * b, v])
-    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([s, t]) => this.renderer.project(corner(s, t)))
-    const seen = corners.every(Boolean)
-    this.svg.style.visibility = seen ? "" : "hidden"
-    if (!seen) { return }
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+      .map(([s, t]) => this.renderer.project(corner(s, t)))
+    if (!corners.every(Boolean)) { return }
+    this.svg.style.visibility = ""
     this.frame.setAttribute("d", `${line(corners)}Z`)
     const {clientWidth: w, clientHeight: h} = this.overlay.canvas
-    const inside = ([x, y]) => x > 24 && x < w - 24 && y > 24 && y < h - 24
+    const inside = (at) => at[0] > 24 && at[0] < w - 24 && at[1] > 24 && at[1] < h - 24
     const middles = [[1, 0], [0, 1], [0, -1], [-1, 0]].map(([s, t]) => corner(s, t))
     const at = middles.find((place) => inside(this.renderer.project(place))) ?? origin
     const [x, y] = this.renderer.project(at)
@@ -56,10 +56,9 @@ export class CutHandles extends DragHandle {
     const tip = [x + ARROW * dx / long, y + ARROW * dy / long]
     if (Math.hypot(tip[0] - x, tip[1] - y) < 20) { tip[1] = y - 26 }
     this.arrow.setAttribute("d", line([[x, y], tip]))
-    for (const [kind, [cx, cy]] of [["move", [x, y]], ["turn", tip]]) {
-      this.knobs[kind].setAttribute("cx", cx)
-      this.knobs[kind].setAttribute("cy", cy)
-    }
+    const put = (knob, at) => ["cx", "cy"].forEach((name, i) => knob.setAttribute(name, at[i]))
+    put(this.knobs.move, [x, y])
+    put(this.knobs.turn, tip)
     this.at = at
   }
 
@@ -67,7 +66,7 @@ export class CutHandles extends DragHandle {
     return dot(way.map(Math.abs), minus(this.box[1], this.box[0]))
   }
 
-  // How many pixels a step of one along the normal is, from a place; and how many one is worth at all.
+  // How many pixels a step of one along the normal is, from a place; how many one is worth at all.
   step(place) {
     const {renderer} = this
     const length = 0.01 * Math.max(...minus(this.box[1], this.box[0]))
@@ -77,7 +76,7 @@ export class CutHandles extends DragHandle {
     return [(to[0] - from[0]) / length, (to[1] - from[1]) / length]
   }
 
-  begin(e, kind) {
+  begin(_e, kind) {
     return {kind, cut: this.cut, way: this.step(this.at)}
   }
 

@@ -15,14 +15,31 @@ export function line(pixels) {
   return `M${pixels.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}`
 }
 
-// Each kind has `begin(e, kind)`, which returns what it must remember of the beginning, or nothing;
-// `follow(dx, dy, e)`, which returns whether anything moved; and `say(done)`, which tells the server.
 export class DragHandle {
-  constructor(className, every, overlay, renderer, hears) {
-    Object.assign(this, {every, overlay, renderer, held: null}, hears)
+  /**
+   * @param {string} className @param {number} every @param {Overlay} overlay
+   * @param {Renderer} renderer
+   * @param {{tell: Tell, moved: (state?: any) => void}} hears
+   */
+  constructor(className, every, overlay, renderer, {tell, moved}) {
+    this.every = every
+    this.overlay = overlay
+    this.renderer = renderer
+    this.tell = tell
+    this.moved = moved
+    this.held = null
     // Numbers and sliders do the same by keys.
     this.svg = make("svg", `handle ${className}`, overlay.root, {"aria-hidden": "true"})
   }
+
+  /** What must be remembered of the beginning; null where nothing begins. @returns {any} */
+  begin(_e, _kind) { return null }
+
+  /** Whether anything moved. @returns {boolean} */
+  follow(_dx, _dy, _e) { return false }
+
+  // Tells the server.
+  say(_done) {}
 
   // Lets a part of the SVG be dragged.
   grip(element, kind) {
@@ -65,5 +82,9 @@ export class DragHandle {
     clearTimeout(this.held?.later)
     this.held = null
     this.svg.classList.remove("holding")
+  }
+
+  remove() {
+    this.drop()
   }
 }

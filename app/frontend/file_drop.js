@@ -6,6 +6,7 @@ import {acceptDrops, Uploader} from "./upload.js"
 
 const styled = await stylesheet("file_drop.css")
 
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const text = element("span", {}, model.label)
   const input = element("input", {
@@ -16,11 +17,15 @@ export function render({model}) {
   const label = element("label", {}, text, element("small", {}, model.hint), input, bar)
   const cancel = button({hidden: true, on: {click: () => uploader.cancel()}}, "Cancel")
   const uploader = new Uploader(model, {
-    started: (files) => { text.textContent = `Sending ${files.map((f) => f.name).join(", ")}`
-      cancel.hidden = false },
+    started: (files) => {
+      text.textContent = `Sending ${files.map((f) => f.name).join(", ")}`
+      cancel.hidden = false
+    },
     moved: (part) => { bar.style.width = `${100 * part}%` },
-    ended: () => { bar.style.width = "0"; input.value = ""; text.textContent = model.label
-      cancel.hidden = true },
+    ended: () => {
+      bar.style.width = "0"; input.value = ""; text.textContent = model.label
+      cancel.hidden = true
+    },
   })
   acceptDrops(label, (over) => label.classList.toggle("over", over), (f) => uploader.send(f))
   return element("div", {}, styled(), label, cancel)

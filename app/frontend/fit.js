@@ -1,7 +1,7 @@
 // How far away the eye must be for the character to be seen whole in what cards leave free, and
 // where on the canvas each point of it is then seen.
 
-import {isCharacter} from "./actor.js"
+import {isCharacter} from "./shape.js"
 import {VIEW_ANGLE} from "./orbit.js"
 
 const FITTED = 20000  // points of an actor that are looked at to see all of it
@@ -9,6 +9,7 @@ const AIR = 1.05  // a little more is seen than must be
 const SLOPE = Math.tan(VIEW_ANGLE * Math.PI / 360)
 
 export class Fit {
+  /** @param {Renderer} renderer */
   constructor(renderer) {
     this.renderer = renderer
   }
@@ -69,7 +70,7 @@ function project(rests, direction, target) {
     const step = 3 * Math.max(1, Math.floor(rest.length / 3 / FITTED))
     for (let i = 0; i < rest.length; i += step) {
       const [x, y, z] = target.map((c, k) => rest[i + k] - c)
-      for (const axis of [right, up, direction]) { seen.push(x * axis[0] + y * axis[1] + z * axis[2]) }
+      for (const [a, b, c] of [right, up, direction]) { seen.push(x * a + y * b + z * c) }
     }
   }
   return Float64Array.from(seen)

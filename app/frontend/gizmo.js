@@ -1,6 +1,6 @@
 // Three rings on the chosen joint: dragging one turns the joint about its own axis.
 
-import {plainList} from "./arrays.js"
+import {onPage, within} from "./elements.js"
 import {DragHandle, line, make} from "./drag_handle.js"
 import {transformed} from "./skin.js"
 import {along, dot, minus, rotated, unit} from "./vectors.js"
@@ -10,9 +10,10 @@ const RING_RADIUS = 62
 const RING_STEPS = 64
 
 export class Gizmo extends DragHandle {
-  // `turned(pose)` hears of each pose while a ring is dragged; `tell` sends to the server.
+  // `moved(pose)` hears of each pose while a ring is dragged; `tell` sends to the server.
   constructor(overlay, renderer, hears) {
     super("gizmo", 70, overlay, renderer, hears)
+    this.poseNow = hears.poseNow
     this.part = null
     this.rings = RING_COLORS.map((color, axis) => this.makeRing(color, axis))
     this.show(null)
@@ -34,8 +35,9 @@ export class Gizmo extends DragHandle {
   }
 
   // `part`: the joint, how many there are, where it is at rest, and which joints go along.
+  /** @param {Rings | null} part */
   show(part) {
-    this.part = part && {...part, below: plainList(part.below), centre: plainList(part.centre)}
+    this.part = part && {...part, below: [...part.below], centre: [...part.centre]}
     if (this.held && this.held.joint !== this.part?.joint) { this.drop() }
     this.svg.style.display = part ? "" : "none"
   }
@@ -74,13 +76,12 @@ export class Gizmo extends DragHandle {
       paths.reach.setAttribute("d", line(points.map(({at}) => at)))
       // Each letter moves to a different side, so that no two overlap.
       const [right, down] = [[-0.3, 1], [1, -0.2], [-0.6, -1]][k]
-      const score = ({at: [x, y], near}) =>
-        (near ? 1000 : 0) + right * (x - middle[0]) + down * (y - middle[1])
+      const score = ({at, near}) =>
+        (near ? 1000 : 0) + right * (at[0] - middle[0]) + down * (at[1] - middle[1])
       const mark = points.reduce((a, b) => score(b) > score(a) ? b : a)
-      knob.setAttribute("cx", mark.at[0])
-      knob.setAttribute("cy", mark.at[1])
-      letter.setAttribute("x", mark.at[0])
-      letter.setAttribute("y", mark.at[1])
+      const [x, y] = mark.at
+      for (const [name, value] of Object.entries({cx: x, cy: y})) { knob.setAttribute(name, value) }
+      for (const [name, value] of Object.entries({x, y})) { letter.setAttribute(name, value) }
     })
   }
 
@@ -100,8 +101,7 @@ export class Gizmo extends DragHandle {
     const now = this.poseNow()
     const base = now ? now.slice() : identities(this.part.joints)
     const {centre, axes} = this.frame(now)
-    const box = this.overlay.canvas.getBoundingClientRect()
-    const motion = this.motionAt(centre, axes, axis, e.clientX - box.left, e.clientY - box.top)
+    const motion = this.motionAt(centre, axes, axis, ...within(this.overlay.canvas, e))
     const {joint} = this.part
     this.rings[axis].group.classList.add("held")
     this.tell({type: "turn", joint, axis, degrees: 0, begin: true})
@@ -113,7 +113,8 @@ export class Gizmo extends DragHandle {
     const points = this.around(centre, axes, axis, this.renderer.project(centre)[2])
     const away = ({at}) => Math.hypot(at[0] - x, at[1] - y)
     const best = points.reduce((a, b, i) => away(b) < away(points[a]) - 0.5 ? i : a, 0)
-    const [a, b] = [-1, 1].map((side) => points[(best + side + points.length - 1) % (points.length - 1)].at)
+    const count = points.length - 1
+    const [a, b] = [-1, 1].map((side) => points[(best + side + count) % count].at)
     const radians = 4 * Math.PI / RING_STEPS
     const motion = [(b[0] - a[0]) / radians, (b[1] - a[1]) / radians]
     const length = Math.hypot(...motion)
@@ -128,7 +129,7 @@ export class Gizmo extends DragHandle {
     const radians = (dx * wx + dy * wy) / (wx * wx + wy * wy)
     held.degrees = Math.round(radians * 180 / Math.PI * (e.shiftKey ? 1 / 15 : 1))
       * (e.shiftKey ? 15 : 1)
-    this.turned(this.poseAt(held.degrees))
+    this.moved(this.poseAt(held.degrees))
     this.label(e)
     return true
   }
@@ -158,11 +159,10 @@ export class Gizmo extends DragHandle {
 
   label(e) {
     const {angle} = this.overlay
-    const box = this.overlay.canvas.getBoundingClientRect()
+    const [x, y] = within(this.overlay.canvas, e)
     angle.hidden = false
     angle.textContent = `${"XYZ"[this.held.axis]} ${this.held.degrees}°`
-    angle.style.left = `${e.clientX - box.left}px`
-    angle.style.top = `${e.clientY - box.top}px`
+    Object.assign(angle.style, {left: `${x}px`, top: `${y}px`})
   }
 
   drop() {
@@ -173,9 +173,8 @@ export class Gizmo extends DragHandle {
 
   // Where a ring can be taken hold of, on the page: for tests.
   handle(axis) {
-    const box = this.overlay.canvas.getBoundingClientRect()
     const {knob} = this.rings[axis]
-    return [box.left + Number(knob.getAttribute("cx")), box.top + Number(knob.getAttribute("cy"))]
+    return onPage(this.overlay.canvas, ["cx", "cy"].map((name) => Number(knob.getAttribute(name))))
   }
 }
 

@@ -3,6 +3,7 @@
 
 import {Fit} from "./fit.js"
 import {LegendPlace} from "./legend_place.js"
+import {siblings} from "./panel.js"
 import {noCards} from "./tiles.js"
 
 const SLIM = 700  // a canvas less wide than this has no space beside its cards
@@ -10,23 +11,28 @@ const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
 const UNDER_TOOLS = 56
 const NARROW_FEET = 600  // in a view less wide than this the legend would cover feet
 const LARGE = 300  // a card this wide has a part of the canvas for itself, whatever its width
+const LOW = 420  // a canvas less high than this, as of a telephone on its side, has none below
 const GAP = 6
 
 export class Insets {
+  /** @param {{overlay: Overlay, renderer: Renderer, orbit: Orbit, [act: string]: any}} about */
   constructor({overlay, renderer, orbit, changed, rested}) {
-    Object.assign(this, {overlay, renderer, orbit, changed, rested})
+    this.overlay = overlay
+    this.renderer = renderer
+    this.orbit = orbit
+    this.changed = changed
+    this.rested = rested
     this.legend = new LegendPlace(overlay, renderer, () => this.cards)
     this.fitting = new Fit(renderer)
     this.factor = 1  // how many times as far away as without cards
     this.observer = new ResizeObserver(() => this.make())
-    for (const part of [overlay.canvas, overlay.legend, overlay.transport]) { this.observer.observe(part) }
+    this.watched = []
+    const {canvas, legend, transport} = overlay
+    for (const part of [canvas, legend, transport]) { this.observer.observe(part) }
   }
 
-  // Panel puts elements beside the canvas into wrappers next to the canvas's wrapper.
   get cards() {
-    const own = this.overlay.root.getRootNode().host?.parentNode
-    const beside = [...own?.parentNode?.children || []].filter((one) => one !== own)
-    return beside.map((wrapper) => wrapper.firstElementChild).filter(Boolean)
+    return siblings(this.overlay.root)
   }
 
   // Sees what is free, and fits the character into it.
@@ -39,7 +45,10 @@ export class Insets {
       return
     }
     const {cards} = this
+    const gone = this.watched.filter((card) => !cards.includes(card))
+    for (const card of gone) { this.observer.unobserve(card) }
     for (const card of cards) { this.observer.observe(card) }
+    this.watched = cards
     if (!this.differs(box, cards)) { return }
     const insets = this.free(box, cards)
     const seen = JSON.stringify([insets, box.width, box.height, this.renderer.views.length])
@@ -71,10 +80,12 @@ export class Insets {
   differs(box, cards) {
     const rests = this.fitting.rests()
     const places = [...cards, ...this.edges].map((part) => part.getBoundingClientRect())
-    const now = JSON.stringify([box, places, this.legend.shift, this.orbit.home, this.renderer.views.length])
+    const {legend, orbit, renderer} = this
+    const now = JSON.stringify([box, places, legend.shift, orbit.home, renderer.views.length])
     const same = now === this.placed && rests.length === this.rests.length
       && rests.every((rest, i) => rest === this.rests[i])
-    Object.assign(this, {placed: now, rests})
+    this.placed = now
+    this.rests = rests
     return !same
   }
 
@@ -93,20 +104,25 @@ export class Insets {
     if (narrow && this.overlay.root.querySelector(".tools")) { insets.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
     const take = (edge, pixels, of = insets) => { of[edge] = Math.max(of[edge], pixels + GAP) }
-    const beside = {left: 0, right: 0}
+    const beside = {left: 0, right: 0, top: 0, bottom: 0}
     const {edges} = this
     for (const card of cards) {
       const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
       if (!width || !height) { continue }
-      if (width > 0.6 * box.width || width > 2.5 * height) {
+      const isFlat = width > 2.5 * height && box.height >= LOW
+      if (width > 0.6 * box.width || isFlat) {
         const below = top + bottom > box.top + box.bottom
-        if (below) { take("bottom", box.bottom - top) }
-        else if (slim || several) { take("top", bottom - box.top) }
-        else { edges.push(card) }
+        if (below) {
+          take("bottom", box.bottom - top)
+        } else if (slim || several) {
+          take("top", bottom - box.top)
+        } else {
+          edges.push(card)
+        }
       } else {
         const of = slim || several || width > LARGE ? insets : beside
-        const after = left + right > box.left + box.right
-        if (after) { take("right", box.right - left, of) } else { take("left", right - box.left, of) }
+        const isRight = left + right > box.left + box.right
+        take(isRight ? "right" : "left", isRight ? box.right - left : right - box.left, of)
       }
     }
     if (!slim && !several) { return this.clear(insets, box, beside, edges) }
@@ -116,7 +132,7 @@ export class Insets {
       if (part.hidden) { continue }
       const {right, top} = this.boxOf(part)
       // A telephone on its side is too low for the legend to be below the character.
-      if (part === legend && !several && box.width > box.height) {
+      if (part === legend && (several ? box.height < LOW : box.width > box.height)) {
         take("left", right - box.left)
       } else {
         take("bottom", box.bottom - top)
@@ -127,7 +143,8 @@ export class Insets {
 
   // The legend is treated as in its corner, wherever it is now.
   boxOf(part) {
-    return part === this.overlay.legend && !part.hidden ? this.legend.home : part.getBoundingClientRect()
+    const moves = part === this.overlay.legend && !part.hidden
+    return moves ? this.legend.home : part.getBoundingClientRect()
   }
 
   // A wide canvas has space around one character, which then moves no more than it must.
@@ -147,7 +164,8 @@ export class Insets {
     if (left + 2 * half + right > width) { return {...insets, left, right} }
     const middle = (insets.left + width - insets.right) / 2
     const shift = 2 * (Math.min(Math.max(middle, left + half), width - right - half) - middle)
-    return {...insets, left: insets.left + Math.max(shift, 0), right: insets.right + Math.max(-shift, 0)}
+    const grown = (edge, by) => insets[edge] + Math.max(by, 0)
+    return {...insets, left: grown("left", shift), right: grown("right", -shift)}
   }
 
   // Cards at an edge need space only where the character would be behind them.
@@ -197,7 +215,9 @@ export class Insets {
   // somewhere else. Reported cameras ignore cards.
   frame(camera) {
     const {position, focal_point: target, now} = camera
-    Object.assign(this, {framed: camera, framedRests: this.fitting.rests(), left: null})
+    this.framed = camera
+    this.framedRests = this.fitting.rests()
+    this.left = null
     this.orbit.setHome(position, target)
     this.fitted = null
     this.make()

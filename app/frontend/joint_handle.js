@@ -1,6 +1,5 @@
-// The handle of a joint at rest: a knob that moves it along the screen, and its partner's, which moves too.
+// The handle of a joint at rest: a knob that moves it along the screen, and its partner with it.
 
-import {plainList} from "./arrays.js"
 import {DragHandle, line, make} from "./drag_handle.js"
 import {across, along, reflected} from "./vectors.js"
 
@@ -19,12 +18,13 @@ export class JointHandle extends DragHandle {
     this.show(null)
   }
 
-  // `part`: the joint, where it is in the scene, and what its partner's place is of it: a normal and
-  // a distance of the mirror's plane.
+  // `part`: the joint, where it is in the scene, and the plane that mirrors it to its partner: a
+  // normal and a distance.
   show(part) {
     if (this.held && part?.joint === this.part.joint) { return }  // the hand is ahead of the server
     this.drop()
-    this.part = part && {joint: part.joint, at: plainList(part.at), mirror: part.mirror && plainList(part.mirror)}
+    const mirror = part?.mirror && [...part.mirror]
+    this.part = part && {joint: part.joint, at: [...part.at], mirror}
     this.svg.style.display = part ? "" : "none"
   }
 

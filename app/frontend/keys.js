@@ -1,16 +1,18 @@
 // What the keys do anywhere on the page, the buttons for it, and the card that lists them.
 
-import {button, element} from "./elements.js"
+import {button, element, elementsWithKey} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const KEYS = [
   ["Space", "play the motion, or halt it"],
   ["← →", "the bone before, the next bone"],
   ["↑ ↓", "towards the root, away from it"],
-  ["F", "look at the chosen bone"],
+  ["F", "look at the chosen bone; in the lesson: present it"],
+  ["Shift F", "look at the chosen bone, also in the lesson"],
+  ["L", "copy the link to this view"],
   ["Ctrl Z", "undo a choice"],
   ["Ctrl Shift Z", "redo"],
-  ["PgDn PgUp", "the tour's next step, the one before"],
+  ["PgDn PgUp", "in the lesson: forward, back"],
   ["?", "show or hide this card"],
   ["Esc", "close it"],
 ]
@@ -29,6 +31,31 @@ const BRUSH_KEYS = [
   ["Enter", "in the canvas: paint at the cross"],
   ["Esc", "put it down"],
 ]
+const SELECTION_KEYS = [
+  ["S", "choose the strongest bone under the pointer"],
+  ["Q", "take the lasso, or put it down"],
+  ["A", "select all vertices"],
+  ["Shift A", "select none"],
+  ["> <", "grow, shrink the selection"],
+  ["I", "isolate the selection, or show all"],
+  ["M", "move its weight to the chosen bone"],
+  ["W", "fill it with the amount"],
+  ["U", "smooth it"],
+  ["C", "copy its weights"],
+  ["V", "paste them by the nearest point"],
+]
+const SELECTION_ACTS = {
+  "s": "strongest", "q": "lasso", "a": "select all", "Shift a": "select none", ">": "grow",
+  "<": "shrink", "i": "isolate", "m": "move weight", "w": "fill", "u": "smooth", "c": "copy",
+  "v": "paste",
+}
+const LASSO_POINTER = [
+  ["drag", "select", "drag"],
+  ["Shift drag", "add"],
+  ["Ctrl drag", "subtract"],
+  ["right-drag", "turn (or Alt and drag)", "two fingers"],
+]
+
 const BRUSH_POINTER = [
   ["drag over the body", "paint", "drag over the body"],
   ["Shift drag", "smooth"],
@@ -51,15 +78,20 @@ const TOOLS = [
   ["undo", "Undo", '<path d="M9 14L4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3"/>'],
   ["redo", "Redo", '<path d="M15 14l5-5-5-5M20 9H10a6 6 0 0 0 0 12h3"/>'],
   ["reset", "Reset all choices", '<path d="M4 4v5h5M4.6 9A8 8 0 1 1 4 13"/>'],
+  ["link", "Copy the link to this view",
+    '<path d="M10 14a4 4 0 0 0 6 0l3-3a4 4 0 0 0-6-6l-1 1"/>'
+    + '<path d="M14 10a4 4 0 0 0-6 0l-3 3a4 4 0 0 0 6 6l1-1"/>'],
   ["rendered", "Rendered by PyVista, with soft shadows, when the view rests",
-    '<circle cx="12" cy="12" r="8"/><path d="M12 4a8 8 0 0 1 0 16c3-4.500 3-11.500 0-16z" fill="currentColor"/>'],
+    '<circle cx="12" cy="12" r="8"/>'
+    + '<path d="M12 4a8 8 0 0 1 0 16c3-4.500 3-11.500 0-16z" fill="currentColor"/>'],
   ["keys", "Help: mouse, touch and keys",
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
 
 // Elements that handle keys themselves.
 const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
-  + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
+  + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], "
+  + "dialog"
 // Those that take letters, brackets and Escape; sliders and switches do not.
 const WRITTEN = "input:not([type=range], [type=checkbox], [type=radio]), textarea, select, "
   + "[contenteditable], [role=combobox], [role=listbox], [role=menu], [role=tree], dialog"
@@ -67,19 +99,21 @@ const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
 export class Keys {
-  constructor(overlay, {act, turnable, painting}) {
+  /** @param {Overlay} overlay */
+  constructor(overlay, {act, link, turnable, painting}) {
     this.overlay = overlay
     this.act = act
+    this.link = link
     this.turnable = turnable
     this.painting = painting
-      overlay.root.append(styled(), this.makeTools(), this.makeCard())
+    overlay.root.append(styled(), this.makeTools(), this.makeCard())
     this.listener = (e) => this.pressed(e)
     document.addEventListener("keydown", this.listener)
   }
 
   makeTools() {
     this.tools = Object.fromEntries(TOOLS.map(([name, title, icon]) => {
-      const click = () => name === "keys" ? this.toggle() : this.act(name)
+      const click = () => this.do(name)
       return [name, button({title, icon, aria: {label: title}, on: {click}})]
     }))
     const aria = {role: "toolbar", label: "Undo, reset, help"}
@@ -89,27 +123,31 @@ export class Keys {
   }
 
   makeCard() {
-    const card = element("dialog", {className: "keys", aria: {labelledby: "keys-title"}})
+    const click = (e) => { if (e.target === card) { card.close() } }
+    const keydown = (e) => {
+      if (e.key === "?") { e.preventDefault(); e.stopPropagation(); card.close() }
+    }
+    const aria = {labelledby: "keys-title"}
+    const card = element("dialog", {className: "keys", aria, on: {click, keydown}})
     const touch = matchMedia("(pointer: coarse)").matches
-    const pointer = (ways) => ways.filter(([, , fingers]) => fingers || !touch)
-      .map(([mouse, what, fingers]) =>
-        [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
-    const list = (keys) => `<dl>${keys.map(([key, what]) =>
-      `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
+    const whole = (words) => words.replaceAll(" ", "\u00a0")
+    const pointer = (ways) => ways.filter(([, , fingers]) => fingers || !touch).map(
+      ([mouse, what, fingers]) =>
+        touch ? [whole(fingers), what.replace(/ \(.*/, "")] : [whole(mouse), what])
+    const list = (keys) => element("dl", {}, ...keys.flatMap(([key, what]) => [
+      element("dt", {}, ...key.split(" ").map((one) => element("kbd", {}, one))),
+      element("dd", {}, what)]))
     // Where fingers are all there is, keys are none.
     const keys = matchMedia("(any-hover: none)").matches ? []
-      : [["Keys of the brush", BRUSH_KEYS], ["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
-    const hands = [["In the canvas", POINTER], ["With the brush", BRUSH_POINTER]]
+      : [["Keys of the brush", BRUSH_KEYS], ["Keys of selections", SELECTION_KEYS],
+          ["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
+    const hands = [["In the canvas", POINTER], ["With the brush", BRUSH_POINTER],
+      ["With the lasso", LASSO_POINTER]]
       .map(([title, ways]) => [title, pointer(ways)])
     const sections = [...hands, ...keys].map(([title, all]) =>
-      `<section><h3>${title}</h3>${list(all)}</section>`)
-    card.innerHTML = `<h2 id="keys-title">Controls</h2><div>${sections.join("")}</div>`
-      + `<button type="button">Close</button>`
-    card.querySelector("button").addEventListener("click", () => card.close())
-    card.addEventListener("click", (e) => { if (e.target === card) { card.close() } })
-    card.addEventListener("keydown", (e) => {
-      if (e.key === "?") { e.preventDefault(); e.stopPropagation(); card.close() }
-    })
+      element("section", {}, element("h3", {}, title), list(all)))
+    card.append(element("h2", {id: "keys-title"}, "Controls"), element("div", {}, ...sections),
+      button({on: {click: () => card.close()}}, "Close"))
     this.card = card
     return card
   }
@@ -129,7 +167,7 @@ export class Keys {
 
   pressed(e) {
     if (e.defaultPrevented) { return }
-    const over = e.composedPath().filter((part) => part instanceof Element)
+    const over = elementsWithKey(e)
     const brush = this.brushAct(e)
     if (brush && !over.some((part) => part.matches(WRITTEN))) {
       e.preventDefault()
@@ -142,13 +180,19 @@ export class Keys {
     if (over.some((part) => part.matches(TYPED))) { return }
     const control = e.ctrlKey || e.metaKey
     const name = e.key.toLowerCase()
+    // Some keyboards need Shift for signs.
+    const selecting = e.shiftKey && /[a-z]/.test(name) ? `Shift ${name}` : name
     let act = null
     if (control) {
       act = {z: e.shiftKey ? "redo" : "undo", y: "redo"}[name]
     } else if (e.key === "?") {
       act = "keys"
+    } else if (name === "l") {
+      act = "link"
     } else if (name === "f") {
       act = "frame"
+    } else if (SELECTION_ACTS[selecting]) {
+      act = SELECTION_ACTS[selecting]
     } else if (e.key === " " && !over.some((part) => part.matches(PRESSED))) {
       act = "play"
     } else if (!e.shiftKey && !this.turnable()) {
@@ -158,7 +202,13 @@ export class Keys {
     }
     if (!act) { return }
     e.preventDefault()
-    if (act === "keys") { this.toggle() } else { this.act(act) }
+    this.do(act)
+  }
+
+  // What a key or a button says: here, or on the server.
+  do(act) {
+    const own = {keys: () => this.toggle(), link: this.link}[act]
+    if (own) { own() } else { this.act(act) }
   }
 
   // Some keyboards have brackets on a third level only, so Alt and Ctrl say nothing.
@@ -167,7 +217,7 @@ export class Keys {
     if (!this.painting()) { return null }
     return {
       "[": "brush smaller", "]": "brush larger", "{": "brush weaker", "}": "brush stronger",
-      Escape: "brush away",
+      "Escape": "brush away",
     }[e.key]
   }
 

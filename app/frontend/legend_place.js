@@ -5,9 +5,16 @@ const SAMPLE = 6000  // points of the character that are looked at
 const GAP = 6
 
 export class LegendPlace {
-  // `cards` tells what else stands over the canvas.
+  /**
+   * `cards` tells what else stands over the canvas.
+   * @param {Overlay} overlay @param {Renderer} renderer @param {() => Element[]} cards
+   */
   constructor(overlay, renderer, cards) {
-    Object.assign(this, {overlay, renderer, cards, shift: [0, 0], corner: "bottom left"})
+    this.overlay = overlay
+    this.renderer = renderer
+    this.cards = cards
+    this.shift = [0, 0]
+    this.corner = "bottom left"
   }
 
   // Where it would be in its own corner, on the page.
@@ -22,17 +29,20 @@ export class LegendPlace {
     const {legend, canvas} = this.overlay
     if (legend.hidden) { return }
     const [home, box] = [this.home, canvas.getBoundingClientRect()]
-    const others = [...this.cards(), ...this.overlay.root.querySelectorAll(".tools, .transport, .painting-hint")]
+    const own = this.overlay.root.querySelectorAll(".tools, .transport, .painting-hint")
+    const others = [...this.cards(), ...own]
       .map((card) => card.getBoundingClientRect()).filter(({width}) => width)
+    const isFree = (place) => !others.some((other) => meets(place, other))
     const free = Object.entries(corners(home, box))
-      .filter(([name, place]) => name === "bottom left" || !others.some((other) => meets(place, other)))
+      .filter(([name, place]) => name === "bottom left" || isFree(place))
     const places = this.renderer.views.length > 1 ? free.slice(0, 1) : free
     const covered = places.map(([, place]) => this.behind(place, box))
     const now = places.findIndex(([name]) => name === this.corner)
     const [name, {left, top}] = places[freest(covered, Math.max(now, 0))]
     this.corner = name
     this.shift = [left - home.left, top - home.top]
-    legend.style.transform = name === "bottom left" ? "" : `translate(${this.shift.map((x) => `${x}px`).join()})`
+    const [x, y] = this.shift
+    legend.style.transform = name === "bottom left" ? "" : `translate(${x}px,${y}px)`
   }
 
   // How many points of the body are seen behind a place.
@@ -63,7 +73,8 @@ export function corners({left, right, top, bottom}, box) {
   }
 }
 
-// Which place to take: the first if nothing is behind it; else that of now, unless another is far better.
+// Which place to take: the first if nothing is behind it; else that of now, unless another is far
+// better.
 export function freest(covered, now) {
   if (!covered[0]) { return 0 }
   const least = covered.indexOf(Math.min(...covered))

@@ -1,8 +1,9 @@
 // A surface in the materials of the character's file, on the graphics card: each corner of its
 // triangles has a tint, and a place in one of the images, which all actors share.
 
-import {plain} from "./arrays.js"
 import {POINTS_WIDE, PointTexture} from "./colour.js"
+import {plain} from "./panel.js"
+import {FRAGMENT} from "./vtk_private.js"
 
 const [CORNER_UNIT, TINT_UNIT, IMAGE_UNIT] = [10, 11, 12]  // colour.js takes those after them
 
@@ -24,8 +25,9 @@ export class ImageLayers {
     const layers = Math.max(count, 1)
     gl.texStorage3D(gl.TEXTURE_2D_ARRAY, Math.log2(side) + 1, gl.RGBA8, side, side, layers)
     if (count) {
+      const whole = [0, 0, 0, 0, side, side, count]
       gl.texSubImage3D(
-        gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, side, side, count, gl.RGBA, gl.UNSIGNED_BYTE, plain(pixels))
+        gl.TEXTURE_2D_ARRAY, ...whole, gl.RGBA, gl.UNSIGNED_BYTE, plain(pixels))
       gl.generateMipmap(gl.TEXTURE_2D_ARRAY)
     }
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR)
@@ -55,7 +57,7 @@ export class Materials {
   }
 
   // `corners`: of each corner its place in the image (two numbers), the image's layer, or -1, and
-  // how the image goes on, 3 across + down: 0 repeats, 1 clamps, 2 mirrors; 9 more where what is
+  // how the image repeats, 3 across + down: 0 repeats, 1 clamps, 2 mirrors; 9 more where what is
   // behind shines through. `tints`: its colour, and how much of it is there.
   set({corners, tints}) {
     const {gl} = this
@@ -91,7 +93,7 @@ export const MATERIAL_SHADER = {
     corner = texelFetch(corners, cornerAt, 0);
     tint = texelFetch(tints, cornerAt, 0);`,
   fragment: [
-    ["void main()\n{", `
+    [FRAGMENT.main, `
       varying vec4 corner;
       varying vec4 tint;
       uniform highp sampler2DArray images;
@@ -99,8 +101,8 @@ export const MATERIAL_SHADER = {
         if (how < 0.5) { return at; }
         return clamp(how < 1.5 ? at : 1.0 - abs(mod(at, 2.0) - 1.0), edge, 1.0 - edge);
       }
-      // Of each two by two, and four by four pixels another share is drawn: nothing has to be sorted
-      // by its distance then.
+      // Of each two by two, and four by four pixels another share is drawn: nothing has to be
+      // sorted by its distance then.
       float share(vec2 pixel) {
         pixel = floor(pixel);
         return fract(0.5 * pixel.x + 0.75 * pixel.y * pixel.y);
@@ -110,17 +112,17 @@ export const MATERIAL_SHADER = {
       }
       void main()
       {`],
-    ["  ambientColor = ambientColorUniform;", `
+    [FRAGMENT.ambient, `
       float edge = 0.5 / float(textureSize(images, 0).x);
       float least = corner.w > 8.5 ? dither(gl_FragCoord.xy) : 0.5;
       float how = corner.w > 8.5 ? corner.w - 9.0 : corner.w;
       float across = floor((how + 0.5) / 3.0);
-      vec3 at = vec3(wrapped(corner.x, across, edge), wrapped(corner.y, how - 3.0 * across, edge), max(corner.z, 0.0));
-      vec4 texel = texture(images, at);
+      vec2 at = vec2(wrapped(corner.x, across, edge), wrapped(corner.y, how - 3.0 * across, edge));
+      vec4 texel = texture(images, vec3(at, max(corner.z, 0.0)));
       if (corner.z < -0.5) { texel = vec4(1.0); }
       if (texel.a * tint.a < least) { discard; }
       vec3 shown = tint.rgb * texel.rgb;
       ambientColor = ambient < 0.9 ? shown : 0.45 * shown;  // edges have no other light`],
-    ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
+    [FRAGMENT.diffuse, "  diffuseColor = shown;"],
   ],
 }

@@ -5,24 +5,29 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("methods.css")
 
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const table = element("table", {aria: {label: model.label}})
   const fill = () => {
-    const held = table.querySelector("input:focus")?.name
-    const columns = [["Method", ""], ...model.columns].map(([text, title]) =>
+    const held = table.querySelector("input:focus")?.getAttribute("name")
+    const columns = [[model.heading, ""], ...model.columns].map(([text, title]) =>
       element("th", {scope: "col", title}, text))
     const head = element("thead", {}, element("tr", {}, ...columns))
     const body = element("tbody")
     for (const {id, title, values, best, note, state, chosen, fixed} of model.rows) {
-      const change = () => model.send_msg({id, on: box.checked})
+      const change = () => model.send_msg({type: "method", id, on: box.checked})
       const box = element("input", {
-        type: "checkbox", name: id, checked: chosen, disabled: fixed, on: {change},
+        type: model.single ? "radio" : "checkbox", name: id, checked: chosen, disabled: fixed,
+        on: {change},
       })
       const label = element("label", {}, box, title)
-      if (fixed) { label.title = chosen ? "Two stay at least" : "Four at most: take one away first" }
-      const cells = values.map((value, i) => element("td", {className: best[i] ? "best" : ""}, value))
+      if (fixed && !model.single) {
+        label.title = chosen ? "Keep at least two" : "Deselect one first (max. 4)"
+      }
+      const cell = (value, i) => element("td", {className: best[i] ? "best" : ""}, value)
       body.append(element(
-        "tr", {className: chosen ? "chosen" : "idle"}, element("td", {}, label), ...cells))
+        "tr", {className: chosen ? "chosen" : "idle"},
+        element("td", {}, label), ...values.map(cell)))
       if (note) {
         const words = element("td", {colSpan: 1 + values.length, id: `note-${id}`}, note)
         box.setAttribute("aria-describedby", words.id)
@@ -31,7 +36,9 @@ export function render({model}) {
       }
     }
     table.replaceChildren(head, body)
-    if (held) { table.querySelector(`input[name="${CSS.escape(held)}"]`)?.focus() }
+    /** @type {HTMLElement | null} */
+    const box = held && table.querySelector(`input[name="${CSS.escape(held)}"]`)
+    box?.focus()
   }
   model.on("rows", fill)
   model.on("columns", fill)

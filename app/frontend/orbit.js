@@ -6,6 +6,7 @@ const MAX_PITCH = 1.5
 const STEP = 24  // pixels that a key moves the view
 
 export class Orbit {
+  /** @param {HTMLElement} element @param {Record<string, (e?: any) => any>} hears */
   constructor(element, {changed, rested, clicked, hovered, chosen, away = () => [0, 0]}) {
     this.element = element
     this.away = away  // of a pointer, from where the target is seen
@@ -17,7 +18,9 @@ export class Orbit {
     this.pointers = new Map()
     this.moving = false
     this.painting = false  // then the left button is the brush's, and the right one turns
-    const on = (type, handler) => element.addEventListener(type, handler, {passive: false})
+    this.listening = new AbortController()
+    const {signal} = this.listening
+    const on = (type, act) => element.addEventListener(type, act, {passive: false, signal})
     // Arrow keys turn when the canvas was reached by keys; after a click they change the bone.
     on("blur", () => { this.byMouse = false })
     on("pointerdown", (e) => {
@@ -27,8 +30,11 @@ export class Orbit {
       this.pressed = this.pointers.size === 1 ? [e.clientX, e.clientY, e.button] : null
     })
     on("pointermove", (e) => {
-      if (this.pointers.has(e.pointerId)) { this.drag(e) }
-      else if (e.pointerType === "mouse") { hovered(e) }
+      if (this.pointers.has(e.pointerId)) {
+        this.drag(e)
+      } else if (e.pointerType === "mouse") {
+        hovered(e)
+      }
     })
     on("pointerup", (e) => {
       this.release(e)
@@ -42,23 +48,27 @@ export class Orbit {
     on("dblclick", () => { this.reset(); this.move(); this.rest() })
     on("wheel", (e) => {
       e.preventDefault()
-      this.zoom(Math.exp(Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 120) * 0.0012), this.away(e))
+      const moved = Math.min(Math.max(e.deltaY, -120), 120)
+      this.zoom(Math.exp(moved * 0.0012), this.away(e))
       this.rest(180)
     })
     on("keydown", (e) => this.key(e))
   }
 
   reset() {
-    Object.assign(this, structuredClone(this.home))
+    this.put(this.home)
+  }
+
+  put({target, yaw, pitch, distance}) {
+    this.target = target
+    this.yaw = yaw
+    this.pitch = pitch
+    this.distance = distance
   }
 
   // Remembers this camera as the one that a double click goes back to.
   setHome(position, target) {
-    const d = position.map((x, i) => x - target[i])
-    const distance = Math.hypot(...d)
-    this.home = {
-      target: [...target], distance, yaw: Math.atan2(d[0], d[2]), pitch: Math.asin(d[1] / distance),
-    }
+    this.home = turntable(position, target)
     this.reset()
   }
 
@@ -70,11 +80,7 @@ export class Orbit {
 
   // Looks from a place at another, and leaves the start as it is.
   look(position, target) {
-    const d = position.map((x, i) => x - target[i])
-    this.distance = Math.hypot(...d)
-    this.target = [...target]
-    this.yaw = Math.atan2(d[0], d[2])
-    this.pitch = Math.asin(d[1] / this.distance)
+    this.put(turntable(position, target))
   }
 
   get atHome() {
@@ -109,7 +115,7 @@ export class Orbit {
     this.pointers.set(e.pointerId, [e.clientX, e.clientY])
   }
 
-  // Goes on with a pointer that was somebody else's so far.
+  // Takes over a pointer that another tool has used so far.
   join(id, place) {
     this.pointers.set(id, place)
   }
@@ -125,8 +131,12 @@ export class Orbit {
     this.move()
   }
 
-  // What lies at the target's depth, some pixels away from it, stays where it is seen.
-  zoom(factor, [dx, dy] = [0, 0]) {
+  /**
+   * What lies at the target's depth, some pixels away from it, stays where it is seen.
+   * @param {number} factor @param {number[]} [from]
+   */
+  zoom(factor, from = [0, 0]) {
+    const [dx, dy] = from
     const {distance} = this.home
     const after = Math.max(distance * 0.04, Math.min(distance * 6, this.distance * factor))
     const part = 1 - after / this.distance
@@ -151,11 +161,11 @@ export class Orbit {
       ArrowLeft: [STEP, 0], ArrowRight: [-STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP],
     }[e.key]
     const act = e.shiftKey && moves ? () => this.pan(...moves) : {
-      Enter: () => this.chosen(),
-      ArrowLeft: () => this.turn(-0.12, 0), ArrowRight: () => this.turn(0.12, 0),
-      ArrowUp: () => this.turn(0, 0.08), ArrowDown: () => this.turn(0, -0.08),
+      "Enter": () => this.chosen(),
+      "ArrowLeft": () => this.turn(-0.12, 0), "ArrowRight": () => this.turn(0.12, 0),
+      "ArrowUp": () => this.turn(0, 0.08), "ArrowDown": () => this.turn(0, -0.08),
       "+": () => this.zoom(0.88), "=": () => this.zoom(0.88), "-": () => this.zoom(1.14),
-      Home: () => { this.reset(); this.move() },
+      "Home": () => { this.reset(); this.move() },
     }[e.key]
     if (!act || e.ctrlKey || e.metaKey || e.altKey) { return }
     if (this.byMouse && e.key.startsWith("Arrow")) { return }
@@ -177,4 +187,16 @@ export class Orbit {
       if (this.moving && this.pointers.size === 0) { this.moving = false; this.rested() }
     }, after)
   }
+
+  remove() {
+    clearTimeout(this.timer)
+    this.listening.abort()
+  }
+}
+
+// Where a camera is on the turntable around its target.
+function turntable(position, target) {
+  const [x, y, z] = position.map((x, i) => x - target[i])
+  const distance = Math.hypot(x, y, z)
+  return {target: [...target], distance, yaw: Math.atan2(x, z), pitch: Math.asin(y / distance)}
 }

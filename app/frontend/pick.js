@@ -9,16 +9,16 @@ export function pickBone(renderer, bones, pose, x, y, reach = REACH) {
   if (!bones) { return null }
   let best = null
   const project = renderer.projection(renderer.viewAt(x, y))
-  bones.joint.forEach((joint, i) => {
+  for (const [i, joint] of bones.joint.entries()) {
     const [a, b] = boneEnds(project, bones, pose, i)
-    if (!a || !b) { return }
+    if (!a || !b) { continue }
     const [distance, along] = toSegment(x, y, a, b)
-    if (distance > reach) { return }
+    if (distance > reach) { continue }
     const depth = a[2] + along * (b[2] - a[2])
     // Near misses count less than depth only among bones that are hit about equally well.
     const score = distance + REACH * 0.25 * depth / renderer.camera.getDistance()
     if (!best || score < best.score) { best = {joint, score} }
-  })
+  }
   return best && best.joint
 }
 

@@ -1,16 +1,22 @@
 // The view of a browser without WebGL: the server draws each picture, coarsely while it turns.
 
+import {copy, copyLink} from "./clipboard.js"
 import {Keys} from "./keys.js"
 import {Orbit} from "./orbit.js"
+import {VIEWING} from "./overlay.js"
+import {onPixelRatio} from "./pixel_ratio.js"
 import {Rendered} from "./rendered.js"
 import {tiles} from "./tiles.js"
 
 const SHAPE = 0.75  // width over height of a character, about
 
 export class PictureView {
+  /** @param {Model<FromBrowser>} model @param {Overlay} overlay */
   constructor(model, overlay) {
-    Object.assign(this, {model, overlay, captions: []})
-    overlay.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · drawn by the server"
+    this.model = model
+    this.overlay = overlay
+    this.captions = []
+    overlay.hint.textContent = `${VIEWING} · drawn by the server`
     this.rendered = new Rendered(overlay, model)
     this.orbit = new Orbit(overlay.canvas, {
       changed: () => this.ask(false), rested: () => this.rested(),
@@ -18,8 +24,10 @@ export class PictureView {
     })
     this.keys = new Keys(overlay, {
       act: (act) => model.send_msg({type: "act", act}), painting: () => false,
+      link: () => copyLink(overlay),
       turnable: () => overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
+    this.forgetRatio = onPixelRatio(() => this.ask(true))
     this.resized = new ResizeObserver(() => this.ask(true))
     this.resized.observe(overlay.canvas)
   }
@@ -29,7 +37,9 @@ export class PictureView {
     return tiles(Math.max(this.captions.length, 1), clientWidth, clientHeight, SHAPE)
   }
 
+  /** @param {ToBrowser} message */
   receive(message) {
+    if (message.copy) { copy(this.overlay, message.copy.text, message.copy.what) }
     if (message.frame) {
       this.waiting = false
       this.rendered.receive(message.frame)
@@ -65,16 +75,17 @@ export class PictureView {
 
   rested() {
     this.ask(true)
+    const {atHome: home, position, target: focal_point} = this.orbit
     const {clientWidth, clientHeight} = this.overlay.canvas
     this.model.send_msg({
-      type: "camera", home: this.orbit.atHome, position: this.orbit.position, focal_point: this.orbit.target,
+      type: "camera", home, position, focal_point,
       aspect: clientWidth / Math.max(clientHeight, 1),
     })
   }
 
   remove() {
-    this.keys.remove()
+    for (const part of [this.keys, this.orbit, this.rendered]) { part.remove() }
+    this.forgetRatio()
     this.resized.disconnect()
-    this.rendered.remove()
   }
 }

@@ -1,16 +1,13 @@
 // The object under the pointer: described on hover, chosen with a click.
 
+import {within} from "./elements.js"
 import {pickBone, REACH, TOUCH} from "./pick.js"
 import {hitLine, hitPoint, hitSurface, valueAt} from "./surface.js"
 
 export class Pointer {
+  /** @param {SceneView} view */
   constructor(view) {
     this.view = view
-  }
-
-  place(e) {
-    const box = this.view.overlay.canvas.getBoundingClientRect()
-    return [e.clientX - box.left, e.clientY - box.top]
   }
 
   // What lies under the pointer: a bone if it is met well or nothing else is, else a vertex.
@@ -26,6 +23,7 @@ export class Pointer {
     return near === null ? null : {joint: near}
   }
 
+  /** @param {(name: string, actor: Actor) => boolean} [those] */
   bodyAt(x, y, those = (name) => name.startsWith("body")) {
     let best = null
     const view = this.view.renderer.viewAt(x, y)
@@ -49,15 +47,16 @@ export class Pointer {
   }
 
   clicked(e) {
-    const node = this.nodeAt(...this.place(e))
+    const at = within(this.view.overlay.canvas, e)
+    const node = this.nodeAt(...at)
     if (node) {
       this.view.model.send_msg({type: "pick-node", node: node.actor.reading.values[node.point]})
       return
     }
-    const found = this.under(...this.place(e))
+    const found = this.under(...at)
     if (!found) { return }
     const {joint, vertex} = found
-    const view = this.view.renderer.viewAt(...this.place(e))
+    const view = this.view.renderer.viewAt(...at)
     this.view.model.send_msg(
       joint === undefined ? {type: "pick-vertex", vertex, view} : {type: "pick", joint},
     )
@@ -79,9 +78,18 @@ export class Pointer {
     if (vertex !== undefined) { this.view.model.send_msg({type: "pick-vertex", vertex, view}) }
   }
 
+  /** By a key: a joint that is the strongest where the pointer, or the cross, is. */
+  strongest() {
+    const {model, renderer} = this.view
+    const [x, y] = this.at ?? renderer.target
+    const vertex = this.bodyAt(x, y)?.vertex
+    if (vertex !== undefined) { model.send_msg({type: "strongest", vertex}) }
+  }
+
   hovered(e) {
+    this.at = e && within(this.view.overlay.canvas, e)
     if (!e || this.view.playing) { this.view.overlay.showBone(null); return }
-    const [x, y] = this.place(e)
+    const [x, y] = within(this.view.overlay.canvas, e)
     const node = this.nodeAt(x, y)
     if (node) {
       this.view.overlay.showBone(valueAt(node.actor, node.point), x, y)
@@ -97,7 +105,7 @@ export class Pointer {
   }
 
   surfaceReading(x, y) {
-    const hit = this.bodyAt(x, y, (name, actor) => actor.reading)
+    const hit = this.bodyAt(x, y, (_name, actor) => Boolean(actor.reading))
     return hit && valueAt(hit.actor, hit.point)
   }
 

@@ -1,41 +1,35 @@
 // What tests and benchmarks ask of the view.
 
+import {onPage} from "./elements.js"
 import {boneEnds} from "./pick.js"
 
 export function probe(view) {
-  const corner = () => {
-    const {left, top} = view.overlay.canvas.getBoundingClientRect()
-    return [left, top]
-  }
+  let asked = 0
   return {
     // Where on the page a joint's first bone is: its middle.
     bonePoint(joint) {
-      const [left, top] = corner()
       const i = view.bones.joint.indexOf(joint)
       const [a, b] = boneEnds(view.renderer.projection(), view.bones, view.currentPose, i)
-      return [left + (a[0] + b[0]) / 2, top + (a[1] + b[1]) / 2]
+      return onPage(view.overlay.canvas, [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2])
     },
 
     // Where on the page the handle of the chosen joint is; undefined where there is none.
     jointHandle() {
-      const [left, top] = corner()
-      const at = view.mover.seen
-      return at && [left + at[0], top + at[1]]
+      return view.mover.seen && onPage(view.overlay.canvas, view.mover.seen)
     },
 
     // Where on the page a vertex of the body is.
     vertexPoint(vertex) {
-      const [left, top] = corner()
       const p = view.renderer.actors.get("body").posed()
-      const [x, y] = view.renderer.project(p.slice(3 * vertex, 3 * vertex + 3))
-      return [left + x, top + y]
+      return onPage(view.overlay.canvas, view.renderer.project(p.slice(3 * vertex, 3 * vertex + 3)))
     },
 
-    // Whether the server is idle, once it has finished earlier requests.
-    serverRests() {
+    // Fulfilled when the server has finished all earlier requests and has no work left.
+    serverIdle() {
+      const number = asked += 1
       return new Promise((done) => {
-        view.answered = done
-        view.model.send_msg({type: "rests?"})
+        view.idle = (answered) => answered === number && done(true)
+        view.model.send_msg({type: "idle?", number})
       })
     },
 

@@ -1,14 +1,18 @@
 // The canvas as PyVista draws it on the server: asked for when the view rests, hidden as soon as
 // anything moves.
 
+import {element} from "./elements.js"
+
 const REST = 250  // milliseconds without a change
 const MOVING_RATIO = 0.5  // pixels of a frame while the view moves, where the server draws them all
 
 export class Rendered {
+  /** @param {Overlay} overlay @param {Model<FromBrowser>} model */
   constructor(overlay, model) {
-    Object.assign(this, {overlay, model, count: 0})
-    this.image = document.createElement("img")
-    Object.assign(this.image, {className: "frame", alt: "", draggable: false})
+    this.overlay = overlay
+    this.model = model
+    this.count = 0
+    this.image = element("img", {className: "frame", alt: "", draggable: false})
     overlay.canvas.append(this.image)
   }
 
@@ -29,10 +33,12 @@ export class Rendered {
     if (this.on) { this.timer = setTimeout(() => this.ask(frame()), REST) }
   }
 
+  /** @param {Frame} frame @param {boolean} [fine] */
   ask(frame, fine = true) {
     const {clientWidth, clientHeight} = this.overlay.canvas
+    const size = [clientWidth, clientHeight]
     const ratio = fine ? Math.min(window.devicePixelRatio || 1, 2) : MOVING_RATIO
-    this.model.send_msg({type: "frame", count: this.count, size: [clientWidth, clientHeight], ratio, fine, ...frame})
+    this.model.send_msg({type: "frame", count: this.count, size, ratio, fine, ...frame})
   }
 
   async receive({count, picture}) {

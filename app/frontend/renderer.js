@@ -1,13 +1,15 @@
 // The vtk.js window: two layers (the scene, and what is drawn over it), lights, frames.
 
-import {isCharacter} from "./actor.js"
+import {withQuaternions} from "./dual_quaternions.js"
+import {boxOf, isCharacter} from "./shape.js"
 import {ImageLayers} from "./materials.js"
 import {VIEW_ANGLE} from "./orbit.js"
 import {PoseTexture} from "./skin.js"
 import {Smooth} from "./smooth.js"
 import {Corners} from "./strokes.js"
 import {noCards, shapeOf, tiles} from "./tiles.js"
-import {across, along, minus, unit} from "./vectors.js"
+import {across, along, dot, minus, unit} from "./vectors.js"
+import {drawAll, makeWindow, projectionMatrix} from "./vtk_private.js"
 
 export function loadVtk(url) {
   window.__cutcellVtk ??= new Promise((resolve, reject) => {
@@ -27,11 +29,10 @@ const NARROW_CAPTIONED = {...CAPTIONED, top: 60}
 const NARROW_CAPTION = 260
 
 export class Renderer {
+  /** @param {any} vtk @param {HTMLElement} element */
   constructor(vtk, element) {
     this.vtk = vtk
     this.element = element
-    // Lines in a surface are drawn over it. This is a global switch of vtk.js, so set it once.
-    vtk.Rendering.Core.vtkMapper.setResolveCoincidentTopologyToPolygonOffset()
     const {vtkRenderWindow, vtkCamera} = vtk.Rendering.Core
     this.window = vtkRenderWindow.newInstance()
     this.window.setNumberOfLayers(2)
@@ -39,13 +40,15 @@ export class Renderer {
     this.camera.setViewAngle(VIEW_ANGLE)
     this.lights = []
     this.views = []
+    /** @type {Map<string, Actor>} */
     this.actors = new Map()
-    this.gl = vtk.Rendering.OpenGL.vtkRenderWindow.newInstance()
-    // Made before vtk.js asks for it: what smooths edges is chosen for each frame (smooth.js).
-    this.context = this.gl.getCanvas().getContext("webgl2", {
-      antialias: false, depth: true, alpha: true, powerPreference: "high-performance",
-    })
-    this.smooth = new Smooth(this.context)
+    const {gl, context} = makeWindow(vtk)
+    this.gl = gl
+    this.context = context
+    this.smooth = new Smooth(context)
+    this.poses = new PoseTexture(context)
+    this.images = new ImageLayers(context)
+    this.corners = new Corners(context)
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
@@ -91,7 +94,8 @@ export class Renderer {
     const shape = shapeOf(this.bounds(isCharacter))
     const free = [Math.max(w - left - right, w / 4, 1), Math.max(h - top - bottom, h / 4, 1)]
     const captions = CAPTIONED.top + CAPTIONED.bottom
-    return tiles(this.views.length, ...free, shape, captions).map(([x, y, ...size]) => [left + x, top + y, ...size])
+    return tiles(this.views.length, ...free, shape, captions)
+      .map(([x, y, ...size]) => [left + x, top + y, ...size])
   }
 
   light(lights) {
@@ -107,25 +111,11 @@ export class Renderer {
     }
   }
 
-  get poses() {
-    this.texture ??= new PoseTexture(this.context)
-    return this.texture
-  }
-
-  get images() {
-    this.imageLayers ??= new ImageLayers(this.context)
-    return this.imageLayers
-  }
-
-  get corners() {
-    this.cornered ??= new Corners(this.context)
-    return this.cornered
-  }
-
-  setPose(pose) {
-    this.pose = pose
+  setPose(pose, dual = false) {
+    this.pose = pose && dual ? withQuaternions(pose) : pose
+    this.dual = dual
     this.poseCount += 1  // the array may be the one of before, with other numbers
-    this.poses.set(pose)
+    this.poses.set(this.pose, dual)
   }
 
   resize(coarse = false) {
@@ -160,7 +150,7 @@ export class Renderer {
     this.moving = moving
     for (const actor of this.actors.values()) { actor.show(outside) }
     this.camera.setClippingRange(...this.depthRange())
-    smooth.draw(this.size, this.rough, () => { this.clear(); this.gl.traverseAllPasses() })
+    smooth.draw(this.size, this.rough, () => { this.clear(); drawAll(this.gl) })
     this.frames += 1
   }
 
@@ -172,36 +162,31 @@ export class Renderer {
     gl.clear(gl.COLOR_BUFFER_BIT)
   }
 
-  // Whether the eye is well outside all that is there, in any pose.
+  // Whether the camera is well outside all actors, in any pose.
   isOutside() {
-    const b = this.bounds()
-    const eye = this.camera.getPosition()
-    const margin = Math.max(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i])) / 2
-    return eye.some((x, i) => x < b[2 * i] - margin || x > b[2 * i + 1] + margin)
+    const {size, middle} = boxOf(this.bounds())
+    const away = minus(this.camera.getPosition(), middle)
+    return away.some((x, i) => Math.abs(x) > (size[i] + Math.max(...size)) / 2)
   }
 
   depthRange() {
-    const [eye, target] = [this.camera.getPosition(), this.camera.getFocalPoint()]
-    const distance = Math.hypot(...eye.map((x, i) => x - target[i]))
-    const b = this.bounds()
-    const centre = [0, 1, 2].map((i) => (b[2 * i] + b[2 * i + 1]) / 2)
-    const radius = Math.hypot(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i]))
-    const toCentre = Math.hypot(...eye.map((x, i) => x - centre[i]))
-    return [Math.max(toCentre - radius, distance * 0.02), toCentre + radius * 1.5]
+    const {size, middle} = boxOf(this.bounds())
+    const radius = Math.hypot(...size)
+    const away = Math.hypot(...minus(this.camera.getPosition(), middle))
+    return [Math.max(away - radius, this.camera.getDistance() * 0.02), away + radius * 1.5]
   }
 
   // Between what distances the character lies: what is farther in it is hazier.
   get nearAndFar() {
-    const [eye, target] = [this.camera.getPosition(), this.camera.getFocalPoint()]
-    const b = this.bounds(isCharacter)
-    const ahead = target.map((x, i) => x - eye[i])
-    const length = Math.hypot(...ahead)
-    const middle = [0, 1, 2].map((i) => (b[2 * i] + b[2 * i + 1]) / 2 - eye[i])
-    const along = middle.reduce((sum, x, i) => sum + x * ahead[i], 0) / length
-    const half = [0, 1, 2].reduce((sum, i) => sum + Math.abs(ahead[i]) * (b[2 * i + 1] - b[2 * i]), 0) / length / 2
+    const eye = this.camera.getPosition()
+    const {size, middle} = boxOf(this.bounds(isCharacter))
+    const ahead = unit(minus(this.camera.getFocalPoint(), eye))
+    const along = dot(minus(middle, eye), ahead)
+    const half = dot(ahead.map(Math.abs), size) / 2
     return [along - half, along + half]
   }
 
+  /** @param {(actor: Actor) => boolean} [those] */
   bounds(those = () => true) {
     const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
     for (const actor of this.actors.values()) {
@@ -234,13 +219,15 @@ export class Renderer {
     return [left + (1 + aside) / 2 * w, top + (1 - above) / 2 * h]
   }
 
-  // How far a pointer is from where its view's target is seen, in pixels of the whole canvas.
-  fromTarget({clientX, clientY}) {
-    const box = this.element.getBoundingClientRect()
-    const [x, y] = [clientX - box.left, clientY - box.top]
+  /**
+   * How far a place of the canvas is from where its view's target is seen, in pixels of the whole
+   * canvas. @param {number[]} at
+   */
+  fromTarget([x, y]) {
     const [left, top, w, h] = this.tiles[this.viewAt(x, y)]
     const [aside, above] = this.middle
-    return [x - left - (1 + aside) / 2 * w, y - top - (1 - above) / 2 * h].map((d) => d * box.height / h)
+    return [x - left - (1 + aside) / 2 * w, y - top - (1 - above) / 2 * h]
+      .map((d) => d * this.element.clientHeight / h)
   }
 
   // Which view a pixel of the canvas belongs to.
@@ -254,7 +241,7 @@ export class Renderer {
   // views; null behind the eye. It holds while the camera stays.
   projection(view = 0) {
     const [left, top, w, h] = this.tiles[view]
-    const m = this.camera.getCompositeProjectionMatrix(w / h, -1, 1)
+    const m = projectionMatrix(this.camera, w / h)
     return ([x, y, z]) => {
       const row = (r) => m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]
       const depth = row(3)
@@ -287,11 +274,8 @@ export class Renderer {
   }
 
   remove() {
-    for (const actor of this.actors.values()) { actor.remove() }
-    this.texture?.remove()
-    this.imageLayers?.remove()
-    this.cornered?.remove()
-    this.smooth.remove()
+    const {poses, images, corners, smooth} = this
+    for (const part of [...this.actors.values(), poses, images, corners, smooth]) { part.remove() }
     this.gl.setContainer(null)
     this.gl.delete()
     this.window.delete()

@@ -5,6 +5,7 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("rows.css")
 
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const list = element("ol")
   const fill = () => {
@@ -13,7 +14,7 @@ export function render({model}) {
     list.replaceChildren(...model.rows.map(([name, note, part], row) => {
       const bar = element("i")
       bar.style.width = `${100 * part}%`
-      const click = () => model.send_msg({row})
+      const click = () => model.send_msg({type: "row", row})
       return element("li", {}, button(
         {on: {click}}, element("span", {title: name}, name), element("b", {}, note), bar))
     }))
@@ -21,7 +22,7 @@ export function render({model}) {
     list.querySelectorAll("button")[held]?.focus()
   }
   const mark = () => list.querySelectorAll("button").forEach((one, row) => {
-    one.setAttribute("aria-current", row === model.chosen)
+    one.setAttribute("aria-current", String(row === model.chosen))
   })
   model.on("rows", fill)
   model.on("chosen", mark)

@@ -1,7 +1,9 @@
-// Linear blend skinning on the graphics card: influences are sent to it once, and after that
-// twelve numbers a joint for each pose, kept in a texture that all actors read.
+// Skinning on the graphics card: influences are sent to it once, and after that a matrix a joint
+// for each pose, kept in a texture that all actors read. Matrices or dual quaternions are blended.
 
-import {plain} from "./arrays.js"
+import {DUAL_SHADER, dualSkinned} from "./dual_quaternions.js"
+import {plain} from "./panel.js"
+import {trueCoordinates, VERTEX} from "./vtk_private.js"
 
 const POSE_UNIT = 15  // the last texture unit that every WebGL 2 has; vtk.js takes the first ones
 
@@ -13,9 +15,11 @@ export class PoseTexture {
     this.on = false
   }
 
-  // `pose`: a Float32Array of row-major 4 by 4 matrices, or null at rest.
-  set(pose) {
+  // `pose`: a Float32Array of row-major 4 by 4 matrices, or null at rest. `dual`: their last rows
+  // are quaternions, to be blended.
+  set(pose, dual) {
     this.on = Boolean(pose)
+    this.dual = dual
     if (!pose) { return }
     const {gl} = this
     const rows = pose.length / 16
@@ -45,10 +49,10 @@ export class PoseTexture {
     this.gl.activeTexture(this.gl.TEXTURE0)
     program.setUniformi("poses", POSE_UNIT)
     program.setUniformf("poseOn", this.on && this.rows ? 1 : 0)
-    // vtk.js shifts and scales points that are far from 1, while poses need the true ones.
-    const m = buffer.getCoordShiftAndScaleEnabled() ? buffer.getInverseShiftAndScaleMatrix() : null
-    program.setUniform3fArray("trueScale", m ? [m[0], m[5], m[10]] : [1, 1, 1])
-    program.setUniform3fArray("trueShift", m ? [m[12], m[13], m[14]] : [0, 0, 0])
+    program.setUniformf("poseDual", this.dual ? 1 : 0)
+    const {scale, shift} = trueCoordinates(buffer)  // poses need them
+    program.setUniform3fArray("trueScale", scale)
+    program.setUniform3fArray("trueShift", shift)
     if (program.isUniformUsed("apartUnit")) { program.setUniformf("apartUnit", unit) }
   }
 
@@ -97,14 +101,21 @@ export function skinVertex(sets, otherSets) {
   if (!sets) { return {declared: "", main: "", swaps: []} }
   const attributes = (name, count) => Array.from({length: count}, (_, s) =>
     `attribute vec4 ${name}Joints${s}MC; attribute vec4 ${name}Weights${s}MC;`).join("\n")
-  const blend = (name, count) => Array.from({length: count}, (_, s) =>
+  const blend = (name, count, add, sums) => Array.from({length: count}, (_, s) =>
     ["x", "y", "z", "w"].map((c) =>
-      `addPose(${name}Joints${s}MC.${c}, ${name}Weights${s}MC.${c}, a, b, c, held);`).join("\n")
+      `${add}(${name}Joints${s}MC.${c}, ${name}Weights${s}MC.${c}, ${sums}, held);`).join("\n"),
   ).join("\n")
-  const blender = (name, count) => `void ${name}Blend(out vec4 a, out vec4 b, out vec4 c) {
+  const blender = (name, count) => `
+  void ${name}Blend(vec4 point, out vec4 a, out vec4 b, out vec4 c) {
     float held = 0.0;
     a = vec4(0.0); b = vec4(0.0); c = vec4(0.0);
-    if (poseOn > 0.5) { ${blend(name, count)} }
+    if (poseOn > 0.5 && poseDual > 0.5) {
+      vec4 first = vec4(0.0); vec4 real = vec4(0.0); vec4 dual = vec4(0.0);
+      ${blend(name, count, "addDual", "point, first, real, dual")}
+      if (held != 0.0) { dualRows(real, dual, a, b, c); }
+    } else if (poseOn > 0.5) {
+      ${blend(name, count, "addPose", "a, b, c")}
+    }
     if (held == 0.0) { a = vec4(1, 0, 0, 0); b = vec4(0, 1, 0, 0); c = vec4(0, 0, 1, 0); }
   }`
   const turned = "vec3(dot(rowX.xyz, normalMC), dot(rowY.xyz, normalMC), dot(rowZ.xyz, normalMC))"
@@ -114,6 +125,7 @@ export function skinVertex(sets, otherSets) {
   ${otherSets ? attributes("other", otherSets) : ""}
   uniform highp sampler2D poses;
   uniform float poseOn;
+  uniform float poseDual;
   uniform vec3 trueScale;
   uniform vec3 trueShift;
   uniform float apartUnit;
@@ -126,28 +138,29 @@ export function skinVertex(sets, otherSets) {
     c += w * texelFetch(poses, ivec2(2, row), 0);
     held += w;
   }
+  ${DUAL_SHADER}
   ${blender("skin", sets)}
   ${otherSets ? blender("other", otherSets) : ""}`,
     main: `
     vec4 truePoint = vec4(vertexMC.xyz * trueScale + trueShift, 1.0);
-    skinBlend(rowX, rowY, rowZ);
+    skinBlend(truePoint, rowX, rowY, rowZ);
     vec3 posed = vec3(dot(rowX, truePoint), dot(rowY, truePoint), dot(rowZ, truePoint));
     posedMC = vec4((posed - trueShift) / trueScale, 1.0);
     ${otherSets ? `vec4 a; vec4 b; vec4 c;
-    otherBlend(a, b, c);
+    otherBlend(truePoint, a, b, c);
     vec3 gap = posed - vec3(dot(a, truePoint), dot(b, truePoint), dot(c, truePoint));
     apart = apartUnit * length(gap);` : ""}`,
     swaps: [
-      ["MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"],
-      ["MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"],
-      ["normalMatrix * normalMC", `normalMatrix * ${turned}`],
-      ["dot(clipPlanes[planeNum], vertexMC)", "dot(clipPlanes[planeNum], posedMC)"],
+      ...[VERTEX.seen, VERTEX.placed, VERTEX.cut].map((line) =>
+        [line, line.replace("vertexMC", "posedMC")]),
+      [VERTEX.normal, VERTEX.normal.replace("normalMC", turned)],
     ],
   }
 }
 
-// The same sum for all points, on the processor: to know where they are, not to draw them.
-export function skinned(skin, rest, pose) {
+// The same for all points, on the processor: to know where they are, not to draw them.
+export function skinned(skin, rest, pose, dual = false) {
+  if (dual) { return dualSkinned(skin, rest, pose) }
   const {joints, weights, count} = skin
   const out = new Float32Array(rest.length)
   for (let i = 0, n = rest.length / 3; i < n; i++) {

@@ -1,58 +1,19 @@
 // A page in one file, without a server: plays the messages that a server would send, which were
-// recorded for each joint (standalone/page.py).
+// recorded for each joint (headless/interactive.py).
 
 import {button, element} from "./elements.js"
 import {render as inspector} from "./inspector.js"
 import {Overlay} from "./overlay.js"
 import {probe} from "./probe.js"
+import {Player, standIn, unpack} from "./recorded.js"
 import {along, dot, minus} from "./vectors.js"
-import {View} from "./view.js"
+import {SceneView} from "./scene_view.js"
 
-const TYPES = {f4: Float32Array, u4: Uint32Array, i4: Int32Array, u2: Uint16Array, u1: Uint8Array}
 const VIEWS = [["weights", "Weights"], ["distance", "Distance"], ["graph", "Graph"]]
+const BLENDINGS = [["linear", "Linear"], ["dual", "Dual quaternions"]]
 const AXES = ["Cut x", "Cut y", "Cut z"]
-const TOGETHER = [["scalars", "table", "limits"], ["clipped", "slab"]]  // entries that are read at once
 const LOW = 300  // pixels
 const LEAST = 5e-3  // a weight that a card would show as 0.00
-
-// The bytes of an element of the page.
-function unpacked(id) {
-  const text = atob(document.getElementById(id).textContent)
-  const bytes = new Uint8Array(text.length)
-  for (let i = 0; i < text.length; i++) { bytes[i] = text.charCodeAt(i) }  // Uint8Array.from takes half a second
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")))
-}
-
-// A message with its arrays, as a server sends it; see standalone/packed.py.
-function reader(buffer) {
-  return function read(value) {
-    if (Array.isArray(value)) { return value.map(read) }
-    if (!value || typeof value !== "object" || ArrayBuffer.isView(value)) { return value }
-    if (!value.$) { return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, read(one)])) }
-    const [type, at, length, unit] = value.$
-    const array = new TYPES[type](buffer, at, length)
-    return unit === 1 ? array : Float32Array.from(array, (x) => x * unit)
-  }
-}
-
-// The entries of an actor's part that are not as before.
-function fresh(part, before) {
-  const now = {...before.reading && {reading: null}, ...part}
-  const differs = (name) => JSON.stringify(now[name]) !== JSON.stringify(before[name])
-  const names = Object.keys(now).filter((name) => (TOGETHER.find((all) => all.includes(name)) ?? [name]).some(differs))
-  return Object.fromEntries(names.map((name) => [name, now[name]]))
-}
-
-// What a widget of the page hears of its server.
-function standIn(acts, rest = {}) {
-  const listeners = {}
-  return {
-    ...rest,
-    on(name, act) { listeners[name] = act },
-    set(name, value) { this[name] = value; listeners[name]?.() },
-    send_msg(message) { acts[message.type]?.(message) },
-  }
-}
 
 // Says something to the page that this one is a frame of; see notebook.js.
 function post(message) {
@@ -61,41 +22,60 @@ function post(message) {
 
 class Page {
   constructor(scenes, read, vtk) {
-    Object.assign(this, {scenes, read, sent: {}, id: 0, vertex: null, clip: -1, normal: [0, 0, 1], part: 0.5})
-    const {view, joint} = scenes
-    Object.assign(this, {shown: view, joint, vertices: read(scenes.vertices)})
+    this.scenes = scenes
+    this.read = read
+    this.vertex = null
+    this.clip = -1
+    this.normal = [0, 0, 1]
+    this.part = 0.5
+    this.shown = scenes.view
+    this.joint = scenes.joint
+    this.vertices = read(scenes.vertices)
     this.dark = matchMedia("(prefers-color-scheme: dark)")
-    this.card = standIn({bone: ({joint}) => this.choose(joint), close: () => this.pick(null)}, {facts: null})
+    const acts = {bone: ({joint}) => this.choose(joint), close: () => this.pick(null)}
+    this.card = standIn(acts, {facts: null})
     const overlay = new Overlay()
-    document.body.append(this.makeControls(), element("main", {}, overlay.root, inspector({model: this.card})))
-    this.view = new View(standIn({
-      pick: ({joint}) => this.choose(joint),
+    const main = element("main", {}, overlay.root, inspector({model: this.card}))
+    document.body.append(this.makeControls(), main)
+    this.view = new SceneView(standIn({
+      "pick": ({joint}) => this.choose(joint),
       "pick-vertex": ({vertex}) => this.pick(vertex),
-      play: ({on}) => this.send({playing: on}),
-      cut: (cut) => this.follow(cut),
+      "play": ({on}) => this.send({playing: on}),
+      "cut": (cut) => this.follow(cut),
     }), vtk, overlay)
+    this.player = new Player(this.view, read)
     window.__cutcell = Object.assign(this.view, probe(this.view))
   }
 
   makeControls() {
     const {joints, order, clips} = this.scenes
     const select = (label, options, choose) => {
-      const made = element("select", {aria: {label}, on: {change: () => choose(Number(made.value))}},
+      const on = {change: () => choose(Number(made.value))}
+      const made = element("select", {aria: {label}, on},
         ...options.map(([value, text]) => element("option", {value}, text)))
       return made
     }
-    this.tabs = VIEWS.map(([name, text]) => button({name, on: {click: () => this.show(name)}}, text))
-    const indented = order.map(([joint, depth]) => [joint, "\u2007".repeat(depth) + joints[joint].name])
-    this.joints = select("Joint", [[joints.length, "All joints"], ...indented], (joint) => this.choose(joint))
-    this.clips = select("Clip", [[-1, "No clip"], ...clips.map(({name}, i) => [i, name])], (clip) => this.move(clip))
+    const tab = ([name, text]) => button({name, on: {click: () => this.show(name)}}, text)
+    this.tabs = VIEWS.map(tab)
+    const indented = ([joint, depth]) => [joint, "\u2007".repeat(depth) + joints[joint].name]
+    const all = [[joints.length, "All joints"], ...order.map(indented)]
+    this.joints = select("Joint", all, (joint) => this.choose(joint))
+    const motions = [[-1, "No clip"], ...clips.map(({name}, i) => [i, name])]
+    this.clips = select("Clip", motions, (clip) => this.move(clip))
+    const blendings = BLENDINGS.map(([, text], i) => [i, text])
+    this.blending = select("Blending", blendings, (i) => this.send({blending: BLENDINGS[i][0]}))
     this.reset = button({on: {click: () => this.move(-1)}}, "Reset pose")
-    this.axes = select("Cut", AXES.map((text, i) => [i, text]), (axis) => this.cut(AXES.map((_, i) => Number(i === axis)), 0.5))
+    const normal = (axis) => AXES.map((_, i) => Number(i === axis))
+    const axes = AXES.map((text, i) => [i, text])
+    this.axes = select("Cut", axes, (axis) => this.cut(normal(axis), 0.5))
     this.slider = element("input", {
       type: "range", min: 0, max: 1, step: "any", aria: {label: "Position of the cut"},
       on: {input: () => this.cut(this.normal, Number(this.slider.value))},
     })
-    const views = element("div", {className: "tabs", aria: {role: "group", label: "View"}}, ...this.tabs)
-    return element("header", {}, views, this.joints, this.clips, this.reset, this.axes, this.slider)
+    const group = {className: "tabs", aria: {role: "group", label: "View"}}
+    const views = element("div", group, ...this.tabs)
+    const posing = [this.clips, this.blending, this.reset]
+    return element("header", {}, views, this.joints, ...posing, this.axes, this.slider)
   }
 
   begin() {
@@ -118,8 +98,7 @@ class Page {
   }
 
   send(message) {
-    this.id += 1
-    this.view.receive({id: this.id, ...message})
+    this.player.send(message)
   }
 
   show(view) {
@@ -142,11 +121,13 @@ class Page {
   }
 
   // Shows another joint, null for all of them, or another vertex, or both.
+  /** @param {{joint?: number | null, vertex?: number | null}} chosen */
   select({joint, vertex}) {
     if (joint !== undefined) { this.joint = joint ?? this.scenes.joints.length }
     if (vertex !== undefined) { this.vertex = vertex }
     this.present()
-    if (vertex !== undefined) { this.card.set("facts", vertex === null ? null : this.facts(vertex)) }
+    if (vertex === undefined) { return }
+    this.card.set("facts", vertex === null ? null : this.facts(vertex))
   }
 
   // Plays a clip; -1 goes back to rest.
@@ -162,12 +143,14 @@ class Page {
   // The middle of the box, and how far it reaches from there along the plane's normal.
   get across() {
     const [low, high] = this.scenes.box
-    return {middle: low.map((x, i) => (x + high[i]) / 2), half: dot(this.normal.map(Math.abs), minus(high, low)) / 2}
+    const half = dot(this.normal.map(Math.abs), minus(high, low)) / 2
+    return {middle: low.map((x, i) => (x + high[i]) / 2), half}
   }
 
   // Puts the plane at a part of the box: 0 cuts all of it away.
   cut(normal, part) {
-    Object.assign(this, {normal, part})
+    this.normal = normal
+    this.part = part
     const {middle, half} = this.across
     this.send({cut: {origin: along(middle, [(2 * part - 1) * half, normal]), normal}})
     this.label()
@@ -182,8 +165,8 @@ class Page {
   }
 
   label() {
-    this.slider.value = this.part
-    this.axes.value = this.normal.findIndex((x) => x > 0.999)
+    this.slider.valueAsNumber = this.part
+    this.axes.selectedIndex = this.normal.findIndex((x) => x > 0.999)
   }
 
   // Shows the view, joint, vertex and theme that are chosen.
@@ -191,30 +174,19 @@ class Page {
     const {scenes, shown, joint, clip} = this
     const [isGraph, theme] = [shown === "graph", Number(this.dark.matches)]
     const one = Math.min(joint, scenes.joints.length - 1)
-    const scene = {weights: scenes.weights[joint], distance: scenes.distance[one], graph: scenes.graph[theme]}[shown]
-    for (const tab of this.tabs) { tab.setAttribute("aria-pressed", tab.name === shown) }
+    const scene = scenes[shown][{weights: joint, distance: one, graph: theme}[shown]]
+    for (const tab of this.tabs) { tab.setAttribute("aria-pressed", String(tab.name === shown)) }
     this.joints.value = shown === "weights" ? joint : one
     this.joints.options[0].disabled = shown !== "weights"
-    this.clips.value = clip
-    this.joints.hidden = isGraph
+    this.clips.value = String(clip)
+    this.joints.hidden = this.blending.hidden = isGraph
     this.clips.hidden = isGraph || !scenes.clips.length
     this.reset.hidden = isGraph || clip >= 0
     this.axes.hidden = this.slider.hidden = !isGraph
     const turns = this.joints.value < scenes.joints.length && !isGraph && clip < 0 && !this.isLow
     const gizmo = turns ? scenes.rings[one] : null
     const overlays = this.read({legend: this.isLow ? null : scene.legend ?? null, gizmo})
-    this.send({theme: scenes.themes[theme], ...this.changes({...scene.actors, ...this.mark}), ...overlays})
-  }
-
-  // What differs from the actors that are there; nothing else has to be read.
-  changes(actors) {
-    const {sent} = this
-    this.sent = actors
-    return {
-      remove: Object.keys(sent).filter((name) => !actors[name]),
-      actors: this.read(Object.fromEntries(
-        Object.entries(actors).map(([name, part]) => [name, fresh(part, sent[name] ?? {})]))),
-    }
+    this.player.show({...scene.actors, ...this.mark}, {theme: scenes.themes[theme], ...overlays})
   }
 
   // The chosen vertex, which moves with the body.
@@ -245,18 +217,4 @@ class Page {
   }
 }
 
-export async function open() {
-  const note = document.querySelector("p")
-  try {
-    if (!document.createElement("canvas").getContext("webgl2")) { throw new Error("it offers no WebGL 2") }
-    const [script, arrays, scenes] = await Promise.all(
-      [unpacked("vtk").text(), unpacked("arrays").arrayBuffer(), unpacked("scenes").json()])
-    document.head.append(element("script", {textContent: script}))
-    new Page(scenes, reader(arrays), window.vtk).begin()
-    note.remove()
-  } catch (error) {
-    document.body.replaceChildren(note)
-    note.textContent = `This browser cannot show the character: ${error.message}.`
-    throw error
-  }
-}
+export const open = () => unpack((scenes, read, vtk) => new Page(scenes, read, vtk).begin())

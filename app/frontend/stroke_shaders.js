@@ -1,5 +1,5 @@
-// How lines and points are drawn on the card (strokes.js): as shaded strokes of two triangles each, or
-// plainly. Pictures are drawn by the same rules (viewers/strokes.py).
+// How lines and points are drawn on the card (strokes.js): as shaded strokes of two triangles
+// each, or plainly. Pictures are drawn by the same rules (viewers/strokes.py).
 
 const HAZE = 0.35  // share of the background in the colour of the farthest points
 
@@ -30,15 +30,15 @@ const WIDE = `
   }
   // A stroke in a surface is seen: it is as near as the front of that surface.
   void lift(vec3 place, float radius) {
-    vec4 front = seen * vec4(place - radius * gl_Position.w / scale * vec3(seen[0][3], seen[1][3], seen[2][3]), 1.0);
+    vec3 ahead = vec3(seen[0][3], seen[1][3], seen[2][3]);
+    vec4 front = seen * vec4(place - radius * gl_Position.w / scale * ahead, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
   }`
 
-const COLOURED = (by) => by === "colors"
-  ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
-  : by === "values"
-    ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
-    : "vec3 valueOf(int i) { return vec3(0.0); }"
+const FETCHED = "texelFetch(points, ivec2(i % 2048, i / 2048), 0)"
+const VALUES = {"colors": `${FETCHED}.rgb`, "values": `vec3(${FETCHED}.r)`, "": "vec3(0.0)"}
+const COLOURED = (by) => `uniform highp sampler2D points;
+  vec3 valueOf(int i) { return ${VALUES[by]}; }`
 
 const HEAD = (by) => `#version 300 es
   precision highp float; precision highp int;
@@ -99,7 +99,8 @@ const POINT = (by) => `${HEAD(by)}
   }`
 
 const FORMS = {
-  round: "float rim = length(across); if (rim > 1.0) { discard; } float light = sqrt(1.0 - rim * rim);",
+  round: `float rim = length(across); if (rim > 1.0) { discard; }
+    float light = sqrt(1.0 - rim * rim);`,
   square: "float rim = max(abs(across.x), abs(across.y)); float light = rim > 0.68 ? 0.25 : 1.0;",
   triangle: `float rim = max(-across.y * 1.25 - 0.1, abs(across.x) * 1.25 + across.y * 0.62);
     if (rim > 0.72) { discard; } float light = rim > 0.5 ? 0.25 : 1.0;`,
@@ -119,6 +120,14 @@ const OPENED = `
       if (i < cuts && dot(planes[i].xyz, at) + planes[i].w < 0.0) { discard; }
     }`
 
+// The colour of a stroke by values, beyond the front grey, by colours of its points, or one of all.
+const OWN = {
+  "values": `shown.x > colourFront ? vec3(0.79, 0.81, 0.84)
+      : texture(colourTable, vec2((clamp((shown.x - colourRange.x) / colourRange.y, 0.0, 1.0)
+        * (colourRange.z - 1.0) + 0.5) / colourRange.z, 0.5)).rgb`,
+  "colors": "shown", "": "color",
+}
+
 const FRAGMENT = (kind, {by, opened, ...how}) => `#version 300 es
   precision highp float;
   uniform vec4 planes[2];
@@ -132,9 +141,7 @@ const FRAGMENT = (kind, {by, opened, ...how}) => `#version 300 es
   void main() {
     ${opened ? OPENED : ""}
     ${LIGHT[kind](how)}
-    vec3 own = ${by === "colors" ? "shown" : by === "values" ? `shown.x > colourFront ? vec3(0.79, 0.81, 0.84)
-      : texture(colourTable, vec2((clamp((shown.x - colourRange.x) / colourRange.y, 0.0, 1.0)
-        * (colourRange.z - 1.0) + 0.5) / colourRange.z, 0.5)).rgb` : "color"};
+    vec3 own = ${OWN[by]};
     painted = vec4(mix(haze, mix(own * (0.62 + 0.38 * light), haze, away), fade), opacity);
   }`
 

@@ -1,18 +1,23 @@
 // Lines and points whose width is fixed on the screen, or follows the scene: lines as shaded tubes,
-// points as balls, squares or triangles. The card fetches the ends of each from a texture, and makes
-// its two triangles itself: vtk.js knows lines of one pixel, and copies their corners. (Not by
-// instances: software renderers draw each of them separately.)
+// points as balls, squares or triangles. The card fetches the ends of each from a texture and makes
+// its two triangles itself: vtk.js knows lines of one pixel, and copies their corners. (Instances
+// would not do: software renderers draw each of them separately.)
 
 import {Colours, PointTexture} from "./colour.js"
 import {strokeProgram} from "./stroke_shaders.js"
+import {projectionMatrix} from "./vtk_private.js"
 
 const PLACE_UNIT = 12
 const ENDS_UNIT = 11
 const CORNERS = 6  // of two triangles, which share two of four places
 
 export class Strokes {
+  /** @param {Renderer} renderer @param {string} kind */
   constructor(renderer, kind) {
-    Object.assign(this, {renderer, kind, gl: renderer.context, form: "round"})
+    this.renderer = renderer
+    this.kind = kind
+    this.gl = renderer.context
+    this.form = "round"
     this.colours = new Colours(this.gl)
     this.places = new PointTexture(this.gl, PLACE_UNIT)
     this.programs = new Map()
@@ -30,7 +35,8 @@ export class Strokes {
     const {gl} = this
     this.each = this.kind === "lines" ? 2 : 1
     this.count = cells.length / this.each
-    const [inside, format] = this.each === 2 ? [gl.RG32UI, gl.RG_INTEGER] : [gl.R32UI, gl.RED_INTEGER]
+    const isLine = this.each === 2
+    const [inside, format] = isLine ? [gl.RG32UI, gl.RG_INTEGER] : [gl.R32UI, gl.RED_INTEGER]
     this.cells.put(cells, inside, format, gl.UNSIGNED_INT, this.each)
   }
 
@@ -42,8 +48,8 @@ export class Strokes {
     return this.programs.get(name)
   }
 
-  // Draws all, or every nth, where vtk.js is about to draw; leaves the card as it was. `quick`: lines
-  // are drawn plain, in a fifth of the time where there is no card.
+  // Draws all, or every nth, where vtk.js is about to draw; leaves the card as it was. `quick`
+  // draws lines plainly, in a fifth of the time where there is no card.
   draw({color, opacity, width, thick, dash, coloured, cut, slab, every, quick}) {
     const {gl, renderer} = this
     if (!this.count) { return }
@@ -75,7 +81,7 @@ export class Strokes {
     program.setUniformi("cells", ENDS_UNIT)
     program.setUniformi("every", every)
     const {camera} = renderer
-    const m = camera.getCompositeProjectionMatrix(wide / high, -1, 1)
+    const m = projectionMatrix(camera, wide / high)
     gl.uniformMatrix4fv(program.at("seen"), true, Float32Array.from(m))
     const ratio = renderer.size[0] / Math.max(renderer.element.clientWidth, 1)
     gl.uniform2f(program.at("size"), wide, high)
@@ -117,7 +123,7 @@ export class Strokes {
   }
 }
 
-// Which four places the two triangles of each stroke have: 0 1 2 and 2 1 3, the same for all strokes.
+// Which four places the two triangles of each stroke have: 0 1 2 and 2 1 3, alike for all strokes.
 export class Corners {
   constructor(gl) {
     this.gl = gl
@@ -132,7 +138,8 @@ export class Corners {
     if (count <= this.count) { return }
     this.count = count
     const order = [0, 1, 2, 2, 1, 3]
-    const indices = Uint32Array.from({length: CORNERS * count}, (_, i) => 4 * Math.floor(i / CORNERS) + order[i % CORNERS])
+    const index = (_, i) => 4 * Math.floor(i / CORNERS) + order[i % CORNERS]
+    const indices = Uint32Array.from({length: CORNERS * count}, index)
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW)
   }
 

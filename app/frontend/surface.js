@@ -1,6 +1,7 @@
 // Where a ray from the eye meets a surface, and what the scene tells of that place.
 
 import {toSegment} from "./pick.js"
+import {projectionMatrix} from "./vtk_private.js"
 
 // The triangle of an actor that is first met under a place of the canvas; null beside it.
 export function hitSurface(renderer, actor, x, y, cut) {
@@ -32,11 +33,11 @@ export function hitLine(renderer, actor, x, y, reach) {
   return best && best.cell
 }
 
-// The point of an actor at a place of the canvas: of those that are met, the one nearest to the eye.
+// The point of an actor at a place of the canvas: of those that are met, the nearest to the eye.
 export function hitPoint(renderer, actor, x, y, reach = 7) {
   const p = actor.rest
   const [left, top, w, h] = renderer.tiles[0]
-  const m = renderer.camera.getCompositeProjectionMatrix(w / h, -1, 1)
+  const m = projectionMatrix(renderer.camera, w / h)
   let best = null
   for (let i = 0; i < p.length; i += 3) {
     const depth = m[12] * p[i] + m[13] * p[i + 1] + m[14] * p[i + 2] + m[15]

@@ -5,6 +5,7 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("tabs.css")
 
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const ids = model.tabs.map(([id]) => id)
   const tabs = model.tabs.map(([id, title, icon]) =>
@@ -28,6 +29,7 @@ export function render({model}) {
   }
   model.on("value", show)
   show()
-  const strip = {className: "strip", aria: {role: "tablist", label: model.label}, on: {keydown: walk}}
-  return element("section", {}, styled(), element("div", strip, ...tabs))
+  const aria = {role: "tablist", label: model.label}
+  const strip = element("div", {className: "strip", aria, on: {keydown: walk}}, ...tabs)
+  return element("section", {}, styled(), strip)
 }

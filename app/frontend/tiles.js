@@ -1,5 +1,8 @@
 // How several views divide a canvas, and what of it the cards over it leave free at first.
 
+import {boxOf} from "./shape.js"
+import {dot} from "./vectors.js"
+
 const FRONT = [0.42, 0.16, 1]  // where one looks from at first, as in viewers/camera.py
 
 // Views side by side fill the canvas, and each has a caption.
@@ -10,12 +13,11 @@ export function noCards(several) {
 // Width over height of a box as it is seen at first.
 export function shapeOf(bounds) {
   const [aside, above, ahead] = FRONT
-  const size = [0, 1, 2].map((i) => Math.max(bounds[2 * i + 1] - bounds[2 * i], 1e-9))
+  const size = boxOf(bounds).size.map((length) => Math.max(length, 1e-9))
   const flat = Math.hypot(aside, ahead)
   const right = [ahead / flat, 0, aside / flat]
   const up = [aside * above / flat, flat, above * ahead / flat].map((x) => x / Math.hypot(...FRONT))
-  const seen = (axis) => axis[0] * size[0] + axis[1] * size[1] + axis[2] * size[2]
-  return Math.min(Math.max(seen(right) / seen(up), 0.4), 2.5)
+  return Math.min(Math.max(dot(right, size) / dot(up, size), 0.4), 2.5)
 }
 
 // Divides a canvas among views so that the contents of each, below its caption, are as large as

@@ -1,14 +1,13 @@
 // The bar under a motion: play and halt it, move through it, change its speed.
 
-import {button, element} from "./elements.js"
+import {button, element, svg} from "./elements.js"
 
 const SPEEDS = [0.25, 0.5, 1, 2]
-const PLAY_ICON = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M8 5v14l11-7z"/></svg>'
-const PAUSE_ICON =
-  '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 5h4v14H6zM14 5h4v14h-4z"/></svg>'
+const PLAY = svg('<path d="M8 5v14l11-7z"/>')
+const PAUSE = svg('<path d="M6 5h4v14H6zM14 5h4v14h-4z"/>')
 
 export class Transport {
-  // `play(on)` and `seek(seconds)` hear what a person does.
+  /** `play(on)` and `seek(seconds)` hear what a person does. @param {Overlay} overlay */
   constructor(overlay, {play, seek}) {
     this.overlay = overlay
     this.place = overlay.transport
@@ -38,7 +37,7 @@ export class Transport {
     this.place.hidden = !clip
     this.overlay.root.classList.toggle("moving", Boolean(clip))
     if (clip) { this.track.max = clip.duration }
-    this.button.innerHTML = playing ? PAUSE_ICON : PLAY_ICON
+    this.button.innerHTML = playing ? PAUSE : PLAY
     this.button.setAttribute("aria-label", playing ? "Pause the motion" : "Play the motion")
   }
 

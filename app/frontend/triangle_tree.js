@@ -52,6 +52,7 @@ export class TriangleTree {
   }
 
   // What a ray meets first of that which is kept: how far that is, where, and the nearest corner.
+  /** @param {Vector} origin @param {Vector} direction @param {(at: Vector) => boolean} [keeps] */
   firstHit(origin, direction, keeps = () => true) {
     const {boxes, first, order, triangles, points} = this
     const inverse = direction.map((x) => 1 / x)
@@ -100,7 +101,9 @@ function enters(boxes, at, origin, inverse) {
 }
 
 // Where a ray meets a triangle, if it does, and the corner that is nearest there.
-export function meet(p, triangles, triangle, [ox, oy, oz], [dx, dy, dz]) {
+export function meet(p, triangles, triangle, origin, direction) {
+  const [ox, oy, oz] = origin
+  const [dx, dy, dz] = direction
   const i = 3 * triangle
   const a = 3 * triangles[i], b = 3 * triangles[i + 1], c = 3 * triangles[i + 2]
   const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2]

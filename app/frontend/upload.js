@@ -4,14 +4,24 @@
 const PIECE = 2 * 1024 * 1024
 
 export class Uploader {
-  constructor(model, {started, moved, ended, refused}) {
-    Object.assign(this, {model, started, moved, ended, refused})
+  /** @param {Model<FromBrowser>} model @param {Record<string, (about?: any) => void>} hears */
+  constructor(model, {started = () => {}, moved = () => {}, ended}) {
+    this.model = model
+    this.started = started
+    this.moved = moved
+    this.ended = ended
     this.answers = []
-    model.on("msg:custom", (message) => {
+    this.hear = (message) => {
       if (message.upload) { this.answers.shift()?.(message.upload) }
-    })
+    }
+    model.on("msg:custom", this.hear)
   }
 
+  remove() {
+    this.model.off("msg:custom", this.hear)
+  }
+
+  /** @param {FromBrowser} message @returns {Promise<ToBrowser["upload"]>} */
   ask(message) {
     return new Promise((resolve) => {
       this.answers.push(resolve)
@@ -46,7 +56,6 @@ export class Uploader {
       if (answer.ok) {
         answer = await this.ask({type: this.stopped ? "upload-cancel" : "upload-end"})
       }
-      if (!answer.ok) { this.refused?.(answer.message) }
     } catch {
       await this.ask({type: "upload-cancel", unreadable: true})  // moved or changed on its disk
     } finally {

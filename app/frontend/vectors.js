@@ -17,7 +17,10 @@ export function across(ahead, above = [0, 1, 0]) {
   return {right, up: cross(right, unit(ahead))}
 }
 
-// A point on the other side of a plane: its normal, of length 1, and its distance from 0.
+/**
+ * A point on the other side of a plane: its normal, of length 1, and its distance from 0.
+ * @param {Vector} point @param {number[]} plane
+ */
 export function reflected(point, [a, b, c, distance]) {
   return along(point, [2 * (distance - dot(point, [a, b, c])), [a, b, c]])
 }

@@ -1,36 +1,30 @@
-// The line over the canvas on a first visit: what the page is for, and three ways in.
+// The line over the canvas on a first visit: what the page is for, and two ways in.
 
+import {button, element} from "./elements.js"
 import {recall, remember} from "./storage.js"
+import {skipLink} from "./skip_link.js"
 import {stylesheet} from "./styles.js"
 import {Uploader} from "./upload.js"
 
 const styled = await stylesheet("welcome.css")
 const SEEN = "cutcell welcomed"
 
+/** @param {{model: Model}} widget */
 export function render({model}) {
-  const root = document.createElement("div")
-  if (recall(SEEN)) { return root }
-  const part = document.createElement("section")
-  part.setAttribute("aria-label", "Welcome")
-  const heading = document.createElement("h2")
-  heading.textContent = model.headline
-  const leave = () => { part.hidden = true; remember(SEEN, "1") }
-  const button = (text, className, act) => {
-    const made = document.createElement("button")
-    Object.assign(made, {type: "button", textContent: text, className})
-    made.addEventListener("click", act)
-    return made
-  }
-  const input = document.createElement("input")
-  Object.assign(input, {type: "file", multiple: true, hidden: true})
-  const uploader = new Uploader(model, {started: () => {}, moved: () => {}, ended: leave})
-  input.addEventListener("change", () => uploader.send(input.files))
-  const go = (step) => () => { leave(); model.send_msg({type: "step", step}) }
-  const close = button("×", "close", leave)
-  close.setAttribute("aria-label", "Close the welcome")
-  part.append(heading, button("See why weights leak", "first", go(model.leak)),
-    button("Open my character", "", () => input.click()), button("Learn", "", go(0)), close, input)
-  model.on("touring", leave)
-  root.append(styled(), part)
-  return root
+  if (recall(SEEN)) { return element("div") }
+  const leave = () => { part.hidden = true; removeLink(); remember(SEEN, "1") }
+  const go = () => { leave(); model.send_msg({type: "step", step: 0}) }
+  const change = () => uploader.send(input.files)
+  const input = element("input", {type: "file", multiple: true, hidden: true, on: {change}})
+  const uploader = new Uploader(model, {ended: leave})
+  const close = {className: "close", aria: {label: "Close the welcome"}, on: {click: leave}}
+  const part = element("section", {aria: {label: "Welcome"}}, element("h2", {}, model.headline),
+    button({className: "first", on: {click: go}}, "See why weights leak"),
+    button({on: {click: () => input.click()}}, "Open my character"),
+    button(close, "×"), input)
+  const first = part.querySelector("button")
+  const removeLink = skipLink("welcome", "Skip to the welcome", () => first)
+  model.on("remove", removeLink)
+  model.on("is_taught", leave)
+  return element("div", {}, styled(), part)
 }

@@ -1,1 +1,1 @@
-"""The server: who is let in, what it logs, and memory that ended sessions held."""
+"""The server: access, its log, and memory of ended sessions."""

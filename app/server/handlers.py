@@ -1,14 +1,15 @@
-"""Who is let in: what the server answers to requests, before and beside its sessions.
+"""Access control: answers to requests outside of sessions.
 
-A page that is asked for is text, and costs next to nothing; a session begins when its websocket
-opens. Websockets are only taken from pages of this server, and nothing is answered to requests
-that know this machine by a name that is not its own (DNS rebinding).
+The page is text and costs next to nothing; a session begins when its websocket opens. Websockets
+are accepted only from pages of this server, and requests for unknown host names are refused (DNS
+rebinding).
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Mapping
+from functools import cached_property
 from html import escape
 from typing import Any
 from urllib.parse import urlparse
@@ -24,27 +25,23 @@ from panel.io.session import generate_session
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
-from tornado.web import RequestHandler, StaticFileHandler
+from tornado.web import ErrorHandler, RequestHandler, StaticFileHandler
+
+from .frames import headers_of
 
 MAX_SESSIONS = 64
-"""Pages that are open at once; each holds some 30 MB, and its character."""
-
+"""Limit of open pages; each takes some 30 MB, and its character."""
 MAX_SESSIONS_OF_CLIENT = MAX_SESSIONS // 2
-"""Pages that one computer may have open: a class behind one address, but not the whole server."""
+"""Limit for one network address: enough for a class, but not the whole server."""
 
+REMEDY = "Close one, or come back later."
 FULL_OF_CLIENT = (
-    f"Your network address has its limit of {MAX_SESSIONS_OF_CLIENT} pages open. Close one, or "
-    "come back later."
+    f"Your network address has its limit of {MAX_SESSIONS_OF_CLIENT} pages open. {REMEDY}"
 )
-
-FULL = (
-    f"As many pages of this server are open as it holds ({MAX_SESSIONS}). Close one, or come back "
-    "later."
-)
+FULL = f"The limit of {MAX_SESSIONS} open pages is reached. {REMEDY}"
 
 KEPT_SECONDS = 365 * 24 * 3600
-"""How long browsers keep files whose address tells their version."""
-
+"""Lifetime in browsers' caches of files whose address contains their version."""
 TOKEN = "token-of-the-session"
 """Placeholder in the page's text of the part that differs for each visitor."""
 
@@ -59,6 +56,7 @@ def guard(
     hosts: Collection[str],
     static: Mapping[str, str] | None = None,
     head: str = "",
+    frames: Collection[str] = (),
 ) -> PageText:
     """Restrict a server to permitted visitors; return the text of its page.
 
@@ -67,11 +65,13 @@ def guard(
     tornado : BokehTornado
         With one application, at "/".
     hosts : collection of str
-        The hosts, with their port, under which browsers know this server.
+        The hosts, with their port, that browsers may use for this server.
     static : mapping, optional
-        Folders by their addresses; what is in them never changes under the same address.
+        Folders by their addresses, under which files never change.
     head : str
-        What is added to the head of the page.
+        HTML that is added to the head of the page.
+    frames : collection of str
+        Origins whose pages may put this page into a frame; see `check_origins`.
     """
     context = tornado.applications["/"]
     text = PageText(tornado, context, head)
@@ -82,11 +82,10 @@ def guard(
         "clients": Counter(),
     }
     routes: list[Any] = [
-        (r"/?", PageHandler, {"context": context, "text": text}),
+        (r"/?", PageHandler, {"context": context, "text": text, "frames": frames}),
         (r"/ws", SocketHandler, websocket),
         # These would begin sessions, too.
-        (r"/autoload\.js", Absent),
-        (r"/metadata", Absent),
+        (r"/(?:autoload\.js|metadata)", ErrorHandler, {"status_code": 404}),
         *(
             (rf"/{address}/(.*)", Lasting, {"path": path})
             for address, path in (static or {}).items()
@@ -99,7 +98,7 @@ def guard(
 
 
 def full(context: ApplicationContext) -> bool:
-    """Whether no more sessions can begin. Those that a browser has left are asked to end."""
+    """Return whether no more sessions can begin; sessions without a browser are asked to end."""
     sessions = list(context.sessions)
     if len(sessions) < MAX_SESSIONS:
         return False
@@ -110,24 +109,20 @@ def full(context: ApplicationContext) -> bool:
 
 
 class PageText:
-    """The page's HTML, made once: it is the same for all but for the token of the session."""
+    """The page's HTML, made once: it is the same for all visitors except the session's token."""
 
     def __init__(self, tornado: BokehTornado, context: ApplicationContext, head: str = "") -> None:
         self._tornado = tornado
         self._head = head
         self._context = context
-        self._text = ""
 
     def __call__(self, token: str) -> str:
         """Return the page for a visitor."""
-        self.make()
-        return self._text.replace(TOKEN, token)
+        return self.text.replace(TOKEN, token)
 
-    def make(self) -> None:
-        """Make it, unless that is done."""
-        self._text = self._text or self._made()
-
-    def _made(self) -> str:
+    @cached_property
+    def text(self) -> str:
+        """The page with a placeholder for the token."""
         session = generate_session(self._context.application)
         document = session.document
         try:
@@ -149,15 +144,19 @@ class PageText:
 class PageHandler(RequestHandler):
     """Answers with the page, whose script then opens the websocket."""
 
-    def initialize(self, context: ApplicationContext, text: PageText) -> None:
-        """Take what the routes give."""
+    def initialize(
+        self, context: ApplicationContext, text: PageText, frames: Collection[str] = ()
+    ) -> None:
+        """Store the options of the route."""
         self._context = context
         self._text = text
+        self._frames = frames
 
     def prepare(self) -> None:
-        """Refuse when the server is full; let no other site put the page into a frame."""
+        """Refuse when the server is full; let only allowed sites put the page into a frame."""
         self.set_header("Cache-Control", "no-store")
-        self.set_header("Content-Security-Policy", "frame-ancestors 'self'")
+        for name, value in headers_of(self._frames).items():
+            self.set_header(name, value)
         if full(self._context):
             self.set_status(503)
             self.finish(PLAIN.format(FULL))
@@ -192,16 +191,16 @@ class SocketHandler(WSHandler):
         hosts: Collection[str] = (),
         clients: Counter[str] | None = None,
     ) -> None:
-        """Take what the routes give; `clients` counts the open websockets of each address."""
+        """Store the options of the route; `clients` counts the open websockets of each address."""
         self._hosts = hosts
         self._clients = Counter() if clients is None else clients
         self._is_counted = False
 
     async def prepare(self) -> None:
-        """Refuse before anything begins."""
+        """Refuse before the handshake."""
         if "Origin" not in self.request.headers:
-            # Browsers always tell it: this is a program that may run for anyone.
-            self._refuse(403, "A websocket must tell its Origin.")
+            # Browsers always send it: this is a program that may run for anyone.
+            self._refuse(403, "A websocket must have an Origin.")
         elif full(self.application_context):
             self._refuse(503, FULL)
         elif self._clients[self._client] >= MAX_SESSIONS_OF_CLIENT:
@@ -214,7 +213,7 @@ class SocketHandler(WSHandler):
         return str(self.request.remote_ip)
 
     def open(self, *args: Any, **more: Any) -> None:
-        """Begin, or rejoin, the session of the token that came along."""
+        """Begin, or rejoin, the session of the request's token."""
         try:
             get_token_payload(str(self._token))
         except Exception:
@@ -232,7 +231,7 @@ class SocketHandler(WSHandler):
         super().on_close()
 
     def check_origin(self, origin: str) -> bool:
-        """Whether a page of this origin may talk to the server."""
+        """Return whether a page of this origin may talk to the server."""
         return check_allowlist(urlparse(origin).netloc.lower(), list(self._hosts))
 
     async def _async_open(self, token: str) -> None:
@@ -245,29 +244,21 @@ class SocketHandler(WSHandler):
 
 
 class Lasting(StaticFileHandler):
-    """Answers with files that browsers may keep, since another version has another address."""
+    """Answers with files that browsers may keep, because each version has its own address."""
 
     def get_cache_time(self, *args: Any) -> int:
         """Return for how many seconds."""
         return KEPT_SECONDS
 
 
-class Absent(RequestHandler):
-    """Answers that there is nothing here."""
-
-    def prepare(self) -> None:
-        """Refuse."""
-        self.send_error(404)
-
-
 class Strange(Matcher):
-    """Requests to a host that this server is not."""
+    """Matches requests for unknown hosts."""
 
     def __init__(self, hosts: Collection[str]) -> None:
         self._hosts = list(hosts)
 
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """Return a match, or None where the host is one of ours."""
+        """Return a match, or None for a known host."""
         return None if check_allowlist(request.host.lower(), self._hosts) else {}
 
 
@@ -275,7 +266,7 @@ class Misdirected(RequestHandler):
     """Answers requests for another host; see `Strange`."""
 
     def initialize(self, hosts: Collection[str]) -> None:
-        """Take what the routes give."""
+        """Store the options of the route."""
         self._hosts = hosts
 
     def prepare(self) -> None:

@@ -1,4 +1,4 @@
-"""The server's log, on a terminal that visitors must not be able to write to."""
+"""The server's log; visitors cannot send control sequences to its terminal."""
 
 import logging
 
@@ -8,7 +8,7 @@ LINE = 4000
 
 
 class Printable(logging.Formatter):
-    """Writes requests, names and tracebacks without what a terminal would obey."""
+    """Formats requests, names and tracebacks without control sequences."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return a record as text."""

@@ -1,4 +1,4 @@
-"""Memory that ended sessions and finished work held, given back to the system soon after."""
+"""Release of memory after sessions and work have ended."""
 
 import ctypes
 import gc
@@ -8,17 +8,16 @@ import threading
 import panel as pn
 
 AFTER = 2.0
-"""Seconds after a session or its work ends; what ends meanwhile is tidied up along with it."""
+"""Seconds after the end of a session or its work."""
 
 _LOCK = threading.Lock()
 _WAITING: list[threading.Timer] = []
 
 
 def detach_from_panel(page: object) -> None:
-    """Take a page out of Panel's own state, which outlives it.
+    """Remove a page's watchers from Panel's global state, which outlives the page.
 
-    The page would tell the browser twice with every choice whether Panel is busy, before anything
-    that the choice changes; this one shows by itself what goes on.
+    With them each choice sends Panel's busy state to the browser twice; the page shows its own.
     """
     state = pn.state
     for watchers in list(state.param.watchers.values()):
@@ -28,7 +27,7 @@ def detach_from_panel(page: object) -> None:
 
 
 def settle() -> None:
-    """Exclude objects that live as long as the server from collections, which stop all threads."""
+    """Freeze long-lived objects: collections, which stop all threads, leave them out."""
     gc.collect()
     gc.freeze()
 
@@ -45,11 +44,11 @@ def collect_later() -> None:
 
 
 def tidy() -> None:
-    """Collect what is no longer used, and give its memory back to the system."""
-    # A page is full of cycles: its document, models, callbacks and session know each other.
+    """Collect unused objects, and return their memory to the system."""
+    # A page is full of cycles: its document, models, callbacks and session refer to each other.
     gc.collect()
     if sys.platform == "linux":
         try:
             ctypes.CDLL(None).malloc_trim(0)
         except AttributeError:
-            return  # another C library than glibc, which has its own ways
+            return  # another C library than glibc

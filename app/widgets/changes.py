@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.pose.skin import Skin
 from cutcell.runtime.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
 from cutcell_viewers.lighting import shading
 from cutcell_viewers.palette import colormap, to_hex
-from cutcell_viewers.skin import Skin
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:
@@ -48,6 +48,8 @@ def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any
         message["legend"] = _legend(new.legend)
     if old.views != new.views:
         message["views"] = [printable(name) for name in new.views]
+    if old.blending != new.blending:
+        message["blending"] = new.blending
     if not _same(old.pose, new.pose):
         message["pose"] = None if new.pose is None else _flat(new.pose, np.float32)
     return message
@@ -85,10 +87,10 @@ def _images(images: NDArray[np.uint8] | None) -> dict[str, Any] | None:
     return {"count": len(images), "side": images.shape[1], "pixels": _flat(images, np.uint8)}
 
 
-def _reference_skin(apart: Apart | None) -> dict[str, Any] | None:
-    if apart is None:
+def _reference_skin(reference: Apart | None) -> dict[str, Any] | None:
+    if reference is None:
         return None
-    return {**_skin(apart.skin), "unit": apart.unit}
+    return {**_skin(reference.skin), "unit": reference.unit}
 
 
 def _skin(skin: Skin) -> dict[str, Any]:

@@ -1,16 +1,18 @@
 """The card over the canvas that tells all about the clicked vertex."""
 
+from functools import partial
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
-from ..commands.correct import overrule
-from ..commands.look import pick, pick_node, pick_vertex
-from ..commands.session import Session
-from ..commands.tour import points_out
-from ..scenes.facts import node_facts, vertex_facts
+from ..document.look import pick, pick_node, pick_vertex
+from ..document.session import Session
+from ..features.correct.commands import overrule
+from ..features.learn.steps import points_out
+from ..features.weights.facts import node_facts, vertex_facts
 from .modules import script, style
+from .table import Control, draw
 
 
 class Inspector(JSComponent):
@@ -23,26 +25,6 @@ class Inspector(JSComponent):
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
         self._session = session
-        self._follow()
-        names = ["rig", "binding", "bare_graph", "panel", "vertex", "node", "tour"]
-        names += [
-            "clicked_method",
-            "methods",
-            "compared",
-            "comparing",
-            "explain",
-            "explanation",
-            "corrections",
-            "joint",
-        ]
-        session.state.param.watch(self._follow, names)
-
-    def _follow(self, *events: Any) -> None:
-        state = self._session.state
-        # Vertices that the tour clicks are marked in the scene and need no card.
-        memo = self._session.memo
-        node = node_facts(state, memo)
-        self.facts = node or (None if points_out(state) else vertex_facts(state, memo))
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if data.get("type") == "close":
@@ -69,12 +51,19 @@ class Inspector(JSComponent):
 
 def inspector(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
-    card = Inspector(session, stylesheets=[style("inspector_place")], margin=0)
-
-    def place(*events: Any) -> None:
+    row = Control(
+        partial(Inspector, session),
+        facts=_facts,
+        stylesheets=[style("inspector_place")],
         # Not by other stylesheets: Panel then asks for its own at a server far away.
-        card.css_classes = ["beside-tour"] if session.state.tour >= 0 else []
-
-    session.state.param.watch(place, "tour")
-    place()
+        css_classes=lambda state: ["beside-lesson"] if state.step >= 0 else [],
+        margin=0,
+    )
+    card: Inspector = draw(session, row)
     return card
+
+
+def _facts(state: Any) -> dict[str, Any] | None:
+    # Vertices that the lesson clicks are marked in the scene and need no card.
+    node = node_facts(state, state.memo)
+    return node or (None if points_out(state) else vertex_facts(state, state.memo))

@@ -4,14 +4,18 @@ Their address tells what they hold, so that no browser takes an older version fo
 """
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from panel.custom import JSComponent
 
 FOLDER = Path(__file__).parents[1] / "frontend"
 
 
 def _version() -> str:
     """Return what is another one whenever a script or a style is."""
-    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css", ".woff"))
+    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
     content = b"".join(path.name.encode() + path.read_bytes() for path in files)
     return hashlib.sha256(content).hexdigest()[:12]
 
@@ -38,9 +42,25 @@ def head() -> str:
     names = sorted(path.name for path in FOLDER.glob("*.js"))
     # A browser fetches them at once, while the page is still loading.
     links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
-    return f'{links}<script type="module" src="{ADDRESS}/component_state.js"></script>'
+    return f'{links}<script type="module" src="{ADDRESS}/panel.js"></script>'
 
 
 def style(name: str) -> str:
     """Return the rules of one of the .css files of `frontend/`."""
     return (FOLDER / f"{name}.css").read_text(encoding="utf-8")
+
+
+class Clickable(JSComponent):
+    """A widget of the page's own that is clicked, as a button is."""
+
+    def __init__(self, **params: Any) -> None:
+        super().__init__(**params)
+        self._act: Callable[[Any], Any] = lambda value: None
+
+    def on_click(self, act: Callable[[Any], Any]) -> None:
+        """Call a function with what each click reports."""
+        self._act = act
+
+    def click(self, value: Any) -> None:
+        """Report a click."""
+        self._act(value)

@@ -1,1 +1,0 @@
-"""Commands of the page: functions that take a session and change its state."""

@@ -1,0 +1,86 @@
+"""Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
+
+from typing import Any
+
+from cutcell_viewers.camera import Camera, framing
+
+from ..features.brush.choices import BRUSH
+from ..features.character import bounds_of, camera_part, theme_of, theme_part
+from ..features.scenes import resolve
+from .session import Session
+from .state import UNSEEN
+
+
+def watch(session: Session) -> None:
+    """Connect the view to the state, and the state to picks in the view."""
+    state, view = session.state, session.view
+    drawn = {"brush", "brush_selection"}
+    watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
+    state.param.watch(lambda *events: show(session), watched)
+    state.param.watch(lambda *events: show_theme(session), "dark")
+    view.listen("pick", lambda message: pick(session, int(message["joint"])))
+    view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
+    view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
+    state.param.watch(
+        lambda *events: pick_node(session, None),
+        ["rig", "binding", "built_graph", "easy_graph", "graph_resolution"],
+    )
+    show_theme(session)
+
+
+def pick_node(session: Session, node: int | None) -> None:
+    """Choose a node of the graph to look at closely; None for no more."""
+    graph = session.state.shown_graph
+    if node is not None and (graph is None or not 0 <= node < len(graph.nodes)):
+        return
+    session.state.node = node
+    if node is not None:
+        session.state.vertex = None  # one card at a time
+
+
+def pick(session: Session, joint: int) -> None:
+    """Choose a joint; show its weights where the colours showed all joints."""
+    state = session.state
+    if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
+        return
+    state.param.update(joint=joint, weights_shown="bone")
+
+
+def pick_vertex(session: Session, vertex: int | None, view: int = 0) -> None:
+    """Choose a vertex to look at closely, in one of the views side by side; None for no more."""
+    state = session.state
+    count = 0 if state.rig is None or state.bare else len(state.rig.mesh.vertices)
+    if vertex is not None and not 0 <= vertex < count:
+        return
+    method = state.methods[view] if 0 <= view < len(state.methods) else ""
+    state.param.update(vertex=vertex, node=None, clicked_method=method)
+
+
+def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
+    pick_vertex(session, int(message["vertex"]), int(message.get("view", 0)))
+
+
+def set_camera(session: Session, camera: Camera | None) -> None:
+    """Look from somewhere; None for the view that one begins with."""
+    view = session.view
+    home = camera_part(framing(bounds_of(session.state), 1.2))
+    if camera is not None:
+        view.camera, view.at_home = camera, False
+        home["now"] = camera_part(camera)
+    view.send(camera=home)
+
+
+def show(session: Session) -> None:
+    """Show the scene of the state; that of a large character, when it is described."""
+    state, view, memo = session.state, session.view, session.memo
+    if state.quick:
+        session.work.cancel("scene")
+        view.present(resolve(state, memo))
+    else:
+        now = state.snapshot()
+        session.work.newest("scene", lambda progress: resolve(now, memo), view.present)
+
+
+def show_theme(session: Session) -> None:
+    """Show the colours of the theme that is chosen."""
+    session.view.send(theme=theme_part(theme_of(session.state)))

@@ -1,0 +1,166 @@
+"""Session of one page: it holds the state, the view and the work; commands act on it."""
+
+import logging
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+from cutcell.editing import Edits
+from cutcell.errors import CutcellError
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+
+from ..derive.engine import Engine
+from ..derive.jobs import Schedule
+from ..derive.memo import Memo
+from ..derive.work import Work
+from ..files.edits_file import EditsFile
+from ..files.upload_cache import UPLOADS, PageUploads
+from ..server.messages import error_text
+from .history import History
+from .state import State
+
+logger = logging.getLogger("cutcell.app")
+
+WAITING = "waiting for the weights"
+"""The stage of an export before there is what it exports."""
+
+
+class View(Protocol):
+    """Interface of the 3D view for commands; see `widgets.view.SceneView`."""
+
+    camera: Camera | None
+    at_home: bool
+    on_camera: Callable[[], None]
+    aspect: float
+    page_height: float
+    time: float
+    calm: bool
+
+    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+        """Call a function with every message of a kind that the browser sends."""
+
+    def present(self, description: Description) -> None:
+        """Show a scene."""
+
+    def send(self, **parts: Any) -> None:
+        """Send parts of the view that are no actors; they are kept for a browser that comes."""
+
+    def last_sent(self, name: str) -> Any:
+        """Return the last value sent for a part; None if none was."""
+
+    def offer(self, name: str, content: bytes) -> None:
+        """Send a file to the browser, which saves it."""
+
+    def answer(self, **message: Any) -> None:
+        """Answer a request of the browser."""
+
+
+class Session:
+    """The store of one page, its view, and its work.
+
+    Parameters
+    ----------
+    view : View
+    schedule : callable
+        See `derive.jobs.Schedule`.
+
+    Attributes
+    ----------
+    state : State
+    work : Work
+        What a person has started, and all other work off the page's thread.
+    engine : Engine
+        It keeps the results up to the state.
+    memo : Memo
+    history : History
+    restoring : bool
+        Whether choices of the past are being restored: they are not recorded again.
+    uploads : PageUploads
+    character : str
+        Key that opens the current character again: "demo" and its id, or "~" and the key of
+        uploaded files ("" for those of this machine); empty where nothing does.
+    paths : list of Path
+        Files of this machine that the page was opened with.
+    returning : bool
+        Whether that character is shown because somebody went back to it.
+    before_lesson : tuple or None
+        The history, the choices and the camera from before the lesson.
+    arrival : dict
+        Choices of the address for the character that is being loaded.
+    computed : tuple or None
+        The mesh, choices and edits of which everything was computed last.
+    notice : tuple or None
+        The message to show once new weights arrive.
+    older_message : tuple or None
+        The message from before the last change: new weights remove it.
+    edits_file : EditsFile
+        Edits that are too long for the address.
+    exports : list of callable
+        Exports that wait for their turn or for the weights; see `export_queue`.
+    """
+
+    def __init__(self, view: View, schedule: Schedule) -> None:
+        self.state = State()
+        self.view = view
+        self.work = Work(schedule, self.fail, self.show_progress)
+        self.engine = Engine(self.state, self.work, self)
+        self.memo = Memo()
+        self.history = History({})
+        self.restoring = False
+        self.uploads = PageUploads(UPLOADS)
+        self.character = ""
+        self.paths: list[Path] | None = None
+        self.returning = False
+        self.before_lesson: tuple[History, dict[str, Any], Camera | None] | None = None
+        self.arrival: dict[str, Any] = {}
+        self.computed: tuple[Any, dict[str, Any], Edits] | None = None
+        self.notice: tuple[str, str] | None = None
+        self.older_message: tuple[str, str] | None = None
+        self.edits_file = EditsFile(self.uploads)
+        self.exports: list[Callable[[], None]] = []
+        self._folder: Path | None = None
+
+    def show_progress(self) -> None:
+        """Show the progress of the work that was started first, and of an export beside it."""
+        progress = self.work.progress
+        others = [one for name, one in progress.items() if name != "export"]
+        export = progress.get("export", (WAITING, 0.0) if self.exports else None)
+        current = others[0] if others else export
+        stage, fraction = current or (self.state.stage, self.state.fraction)
+        self.state.param.update(
+            busy=bool(current),
+            stage=stage,
+            fraction=fraction,
+            exporting=export[0] if others and export else "",
+        )
+
+    def drop_exports(self) -> None:
+        """Drop exports that wait, and add that to the message."""
+        if self.exports:
+            self.exports.clear()
+            self.show_progress()
+            severity, text = self.state.message or ("info", "")
+            self.state.message = (severity, f"{text} Nothing was exported.".strip())
+
+    def fail(self, error: Exception) -> None:
+        """Show an error; the page is unchanged."""
+        if not isinstance(error, CutcellError | MemoryError):
+            logger.error("unexpected error", exc_info=error)
+        self.state.message = ("error", error_text(error))
+
+    @property
+    def folder(self) -> Path:
+        """A folder for files that are about to be handed over."""
+        if self._folder is None or not self._folder.is_dir():
+            self._folder = UPLOADS.storage.make()
+        return self._folder
+
+    def close(self) -> None:
+        """Stop all work and remove what was uploaded."""
+        self.work.close()
+        self.edits_file.close()
+        self.uploads.close()
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)

@@ -1,0 +1,224 @@
+"""The panel Check: what is wrong with the character, where, and what to do about it."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.diagnosis.leaks import moves_own_part
+from cutcell.editing import Filled
+from cutcell.rig import Rig
+
+from ...document.session import Session
+from ...document.state import State
+from ...widgets import controls as ui
+from ..correct.commands import correct_part, leave_out, lock
+from ..layers.buttons import blend_button, file_button, recompute_button
+from ..layers.stack import components_of, part_layers
+from ..select.selections import finding_vertices, select_finding
+from .choices import EXPORT
+from .results import look_at, repair, take_back
+
+ICONS = {"error": "error", "warning": "warning", "note": "info"}
+MAX_DETAILS = 8
+SAME = 1e-9
+"""Weights that differ by less are equal."""
+OF_PARTS = ("boneless-components", "unreachable-vertices")
+"""Findings mended by choosing what parts of the mesh follow."""
+LEFT_OUT = ("stray-weights", "joints-outside")
+"""Findings mended by locking or excluding joints."""
+
+
+def summary(state: State) -> str:
+    """Say how much was found."""
+    if state.rig is None:
+        return ""
+    if state.diagnosis is None:
+        return "The file is checked once weights are computed."
+    if not state.diagnosis.findings:
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
+
+
+def counted(counts: dict[str, int]) -> str:
+    """Say how many findings there are of each severity."""
+    parts = [f"{counts[s]} {s}{'s' * (counts[s] != 1)}" for s in SEVERITIES if counts[s]]
+    return ", ".join(parts) or "nothing"
+
+
+def _line(text: str, **style: str) -> Any:
+    return ui.caption(text, margin=(0, 0, 4, 6), sx={**ui.QUIET, **style})
+
+
+def _strong_line(text: str) -> Any:
+    return _line(text, color="text.primary")
+
+
+def _findings(state: Any) -> list[Any]:
+    """Return the findings below a heading for each severity."""
+    if state.diagnosis is None:
+        return []
+    return [
+        ui.section(
+            f"{severity}s",
+            [_entry(finding, finding.code) for finding in state.diagnosis.of(severity)],
+            margin=(8, 0),
+        )
+        for severity in SEVERITIES
+        if state.diagnosis.of(severity)
+    ]
+
+
+def _exported(state: Any) -> list[Any]:
+    """Return the findings about the weights that an export contains."""
+    if state.export_diagnosis is None:
+        lines: list[Any] = [_line("Checking the weights ...")]
+    else:
+        lines = [_entry(one, EXPORT + one.code) for one in state.export_diagnosis.findings]
+    return [ui.section("Weights in the export", lines or _line("No faults."), margin=(8, 0))]
+
+
+def _entry(finding: Finding, code: str) -> Any:
+    """Return a finding as a button and a line, with its details while it is the chosen one."""
+    return ui.column(
+        ui.button(
+            finding.title, partial(look_at, code=code), icon=ICONS[finding.severity], **ui.LINE
+        ),
+        _line(finding.message),
+        # All buttons stay when another one is chosen, and the focus with them.
+        ui.listed(partial(_place, code=code)),
+        margin=(0, 0, 6, 0),
+    )
+
+
+def _place(state: Any, code: str) -> list[Any]:
+    """Return the details of a finding while it is the chosen one."""
+    followed = (state.finding, state.export_diagnosis)  # but no weights that are not checked yet
+    return _details(state.session.state) if followed[0] == code else []
+
+
+def _details(state: State) -> list[Any]:
+    """Return details of the chosen finding, its advice, and what repairs it."""
+    finding = state.selected_finding
+    if finding is None:
+        return []
+    rows: list[Any] = [_line(text) for text in finding.details[:MAX_DETAILS]]
+    if not state.bare and (len(finding.vertices) or len(finding.faces)):
+        rows.append(ui.button("Select its vertices", select_finding, icon="highlight_alt"))
+    if state.finding.startswith(EXPORT):
+        rows += _part_choices(state, finding)
+        return rows + _layers(state, finding)
+    more = len(finding.details) - MAX_DETAILS
+    rows += [_line(f"and {more} more")] if more > 0 else []
+    rows.append(_strong_line(finding.advice))
+    if finding.code in _in_vain(state):
+        rows.append(_line("Its repair did not help, so that nothing was changed."))
+    elif finding.repair:
+        rows.append(_strong_line(f"Repair: {finding.repair}."))
+        rows.append(ui.button("Repair", partial(repair, codes=[finding.code]), icon="build"))
+    rows += _part_choices(state, finding)
+    if finding.code in LEFT_OUT:
+        rows += _joint_choices(state, finding.joints)
+    if finding.code in OF_PARTS and not state.bare:
+        see = partial(_see_part, vertex=int(finding.vertices[0]))
+        rows.append(ui.button("Choose how these parts are bound", see, icon="category"))
+    return rows
+
+
+def _see_part(session: Session, vertex: int) -> None:
+    session.state.param.update(panel="weights", part=vertex)
+
+
+def _layers(state: State, finding: Finding) -> list[Any]:
+    """Return buttons that put a layer over the vertices of a finding."""
+    vertices = finding_vertices(state)
+    if state.bare or state.binding is None or not len(vertices):
+        return []
+    rows = [recompute_button(finding_vertices), blend_button(finding_vertices)]
+    if not ui.has_weights(state):
+        return rows
+    in_file = state.rig.weights[vertices]
+    differs = np.abs(state.binding.weights[vertices] - in_file).max(axis=1) > SAME
+    if (differs & in_file.any(axis=1)).any():
+        return [*rows, file_button(finding_vertices)]
+    return [_strong_line("The weights there are the file's."), _strong_line(finding.advice), *rows]
+
+
+def _part_choices(state: State, finding: Finding) -> list[Any]:
+    """Return buttons that make parts rigid to the joint that a finding names for each."""
+    if state.bare or state.binding is None:
+        return []
+    names, graph = state.rig.skeleton.names, state.binding.graph
+    component = components_of(graph)
+    buttons = []
+    for vertex, joint in finding.parts[:MAX_DETAILS]:
+        rigid, layer = Filled({names[joint]: 1.0}), part_layers(state.edits).get(vertex)
+        if layer is not None and layer.content == rigid:
+            continue
+        vertices = np.flatnonzero(component == component[vertex]).tolist()
+        act = partial(correct_part, vertices=vertices, content=rigid)
+        buttons.append(ui.button(f"Rigid to {ui.joint_title(state.rig, joint)}", act, icon="link"))
+    return buttons
+
+
+def _joint_choices(state: State, joints: NDArray[np.intp]) -> list[Any]:
+    """Return buttons that lock joints with an own part of the mesh, and exclude the others."""
+    rig = state.rig
+    joints = joints[rig.skeleton.deform[joints]]
+    moves = np.zeros(len(joints), bool)
+    if ui.has_weights(state):
+        moves = moves_own_part(rig.weights[:, joints])
+    choices = (
+        ("Lock {} to file weights", "lock", lock, joints[moves].tolist()),
+        ("Exclude {} from binding", "link_off", leave_out, joints[~moves].tolist()),
+    )
+    return [
+        ui.button(label.format(_joints(rig, which)), partial(act, joints=which), icon=icon)
+        for label, icon, act, which in choices
+        if which
+    ]
+
+
+def _joints(rig: Rig, joints: list[int]) -> str:
+    return ui.joint_title(rig, joints[0]) if len(joints) == 1 else f"these {len(joints)} joints"
+
+
+def _repairs(state: Any) -> list[Any]:
+    """Return what can be repaired at once, and what was repaired: before and after."""
+    findings = () if state.diagnosis is None else state.diagnosis.findings
+    able = [one.code for one in findings if one.repair and one.code not in _in_vain(state)]
+    rows: list[Any] = []
+    if len(able) > 1:
+        label = f"Repair all {len(able)} findings"
+        rows.append(ui.button(label, partial(repair, codes=able), icon="build"))
+    if state.repair is None:
+        return rows
+    done = [_line(text) for text in state.repair.done]
+    if state.repair.before is state.rig:
+        return rows + done
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
+    return [
+        *rows,
+        _strong_line(f"Repaired: {counted(state.repair.counts)}{now}."),
+        *done,
+        ui.button("Undo repair", take_back, icon="undo"),
+    ]
+
+
+def _in_vain(state: State) -> frozenset[str]:
+    """Return the codes of findings whose repair did not help."""
+    return frozenset() if state.repair is None else state.repair.in_vain
+
+
+CONTROLS = ui.column(
+    ui.intro(summary),
+    ui.section(
+        "",
+        ui.listed(_repairs),
+        ui.listed(_findings),
+        ui.listed(_exported, visible=lambda state: not state.bare and state.binding is not None),
+        top=6,
+    ),
+)

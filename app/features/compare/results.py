@@ -1,0 +1,190 @@
+"""Computes what is compared: one method after the other, none stopped by another's failure."""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+import cutcell
+from cutcell.errors import Cancelled, CutcellError
+from cutcell.isolated.run import stoppable
+from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
+from cutcell_lab.baselines import METHODS
+from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.metrics import (
+    DeformationError,
+    deformation_error,
+    unweighted,
+    vertex_shares,
+    weight_l1,
+)
+from cutcell_lab.sweeps import bind_setting
+
+from ...derive.derived import Derived
+from ...derive.jobs import COMPARING
+from ...document.method import effective, method_of
+from ...document.session import Session
+from ...document.state import State
+from ...server.messages import error_text, visible_text
+from ..lab.results import choices_of
+from .choices import FEWEST_VIEWS, MAX_VIEWS, NOW, SINGLE, listed, offered, standard
+from .settings import is_settings, name_of, settings
+
+logger = logging.getLogger("cutcell.app")
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """Result of one method for the rig.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), or None
+        None where it failed.
+    failed : str
+        The reason.
+    seconds : float
+    l1, deformation : float or None
+        Against the file's own weights: the paper's weight error, and its squared distance
+        in motion in cm²; None where the file has none.
+    unweighted : float or None
+        Share of the surface's places without weight.
+    errors : DeformationError or None
+    """
+
+    weights: NDArray | None
+    failed: str = ""
+    seconds: float | None = None
+    l1: float | None = None
+    deformation: float | None = None
+    unweighted: float | None = None
+    errors: DeformationError | None = None
+
+
+def choose(session: Session, name: str, chosen: bool) -> None:
+    """Put a method beside the others, or take it away; two to four stay."""
+    state = session.state
+    names = [one for one in state.methods if one != name]
+    if chosen:
+        names = [one for one in listed(state.rig, [*names, name]) if one in {*names, name}]
+    if FEWEST_VIEWS <= len(names) <= MAX_VIEWS:
+        state.param.update(methods=names, **_single(state, {}, names))
+
+
+def _single(state: State, arrival: Mapping[str, Any], names: list[str]) -> dict[str, str]:
+    """Return the choices of one method each, empty where it is not among the names."""
+    chosen = {one: arrival.get(one, getattr(state, one)) for one in SINGLE}
+    return {one: name if name in names else "" for one, name in chosen.items()}
+
+
+def add(session: Session) -> None:
+    """Put the page's settings beside the others, with another value of the option to change."""
+    state, option = session.state, session.state.added_option
+    try:
+        changed = choices_of(option, state.added_value) if option else {}
+        name = name_of(cutcell.Method(**effective({**method_of(state), **changed})))
+        if name in state.methods:
+            raise cutcell.ParameterError("these settings are among the methods already")
+        choose(session, name, True)
+    except CutcellError as error:
+        session.fail(error)
+
+
+def cancel(session: Session) -> None:
+    """Stop what is being computed; it and what waits are taken off the page."""
+    state = session.state
+    methods = [name for name in state.methods if name in state.compared or name == NOW]
+    spare = [name for name in ("artist", "euclidean") if name in offered(state.rig)]
+    names = methods + [name for name in spare if name not in methods]
+    state.methods = names[: max(len(methods), FEWEST_VIEWS)]
+
+
+def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progress) -> Compared:
+    """Return what a method makes of a rig; a failure that it knows of is its result."""
+    progress(name, 0.0)
+    if name == NOW:
+        weights, seconds = binding.weights, binding.seconds
+    elif is_settings(name):
+        try:
+            setting = bind_setting(rig, settings(name), binding, lambda *_: progress(name, 0.5))
+        except CutcellError as error:
+            return Compared(None, visible_text(str(error)))
+        weights, seconds = setting.weights, setting.seconds
+    else:
+        try:
+            method = METHODS[name]
+            with stoppable(lambda: progress(name, 0.0)):
+                options = known_options(method, resolution=resolution, progress=progress)
+                result = method(rig, **options)
+        except CutcellError as error:
+            return Compared(None, visible_text(str(error)))
+        if result.weights is None:
+            return Compared(None, visible_text(result.failed), float(sum(result.seconds.values())))
+        weights, seconds = result.weights, result.seconds
+    progress(name, 0.9)
+    share = vertex_shares(rig.mesh)
+    total, none = float(sum(seconds.values())), unweighted(weights, share)
+    if rig.weights is None:
+        return Compared(weights, seconds=total, unweighted=none)
+    errors = deformation_error(rig, weights, rig.weights, progress=lambda *_: progress(name, 0.9))
+    l1 = weight_l1(weights, rig.weights, share)
+    return Compared(weights, "", total, l1, errors.mean, none, errors)
+
+
+def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
+    """Set the methods for a new character: those of an address, else those chosen before.
+
+    Parameters
+    ----------
+    state : State
+        With the new character.
+    before : Rig or None
+        The character that was open before.
+    arrival : mapping
+        "methods", those of `SINGLE` and "settled", as far as an address says them.
+    """
+    chosen = [] if state.methods == standard(before) else state.methods
+    wanted = arrival.get("methods", chosen)
+    names = [name for name in wanted if name in listed(state.rig, wanted)]
+    if len(names) < FEWEST_VIEWS:
+        names = standard(state.rig)
+    single = _single(state, arrival, names)
+    state.param.update(methods=names, **single, settled=arrival.get("settled", ()))
+
+
+def _inputs(state: State, name: str) -> tuple[Any, ...] | None:
+    if state.binding is None:
+        return None
+    # Other methods do not depend on what the page has computed.
+    if is_settings(name):
+        return state.rig, name
+    return state.rig, name, state.binding if name == NOW else state.resolution
+
+
+def _compared(rig: Rig, name: str, *more: Any, progress: Progress) -> Compared:
+    binding, resolution = more[-2:]
+    try:
+        return measured(rig, name, binding, resolution, progress)
+    except Cancelled:
+        raise
+    except Exception as error:  # it stops no other method
+        logger.error("a method failed", exc_info=error)
+        return Compared(None, error_text(error))
+
+
+RESULTS = (
+    Derived(
+        "compared",
+        _inputs,
+        _compared,
+        parts=lambda state: state.methods,
+        wanted=lambda state, name: state.panel == "compare",
+        more=lambda state, name: (state.binding, state.resolution),
+        lane="compared",
+        slots=lambda state: COMPARING,
+        failed=lambda session, name: cancel(session),
+    ),
+)

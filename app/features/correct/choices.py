@@ -1,0 +1,203 @@
+"""Edits of the character, and their form in an address."""
+
+import base64
+import binascii
+import zlib
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import param
+
+from cutcell.binding import Binding
+from cutcell.editing import Edits, JointEdit
+from cutcell.editing.restructure import restructured, restructured_skeleton
+from cutcell.errors import CutcellError
+from cutcell.rig import Rig
+
+MAX_IN_ADDRESS = 1500
+"""Letters: longer addresses are cut by some programs that pass them on."""
+MAX_VERTICES = 300
+"""Largest number of overruled vertices that are written into an address."""
+MAX_BYTES = 4 * 2**20
+"""Longest edits as JSON in an address: some characters are overruled vertex by vertex."""
+
+
+class Choices(param.Parameterized):
+    """Edits of the current character."""
+
+    if TYPE_CHECKING:
+        binding: Any
+
+    edits: Any = param.Parameter(Edits(), doc="A cutcell.Edits.")
+    layer = param.Integer(None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.")
+    own: Any = param.Parameter(None, doc="The character without edits: a cutcell.Rig.")
+    joint_handle = param.Boolean(False, label="Show move handle")
+    mirrored = param.Boolean(True, label="Mirror")
+    moved: Any = param.Parameter(
+        None, doc="The rig and its edits while joints are dragged; else None."
+    )
+    previewer: Any = param.Parameter(None, doc="A `Preview` of the open character, or None.")
+    preview: Any = param.Parameter(None, doc="About the binding of the moved rig, or None.")
+    exact_preview: Any = param.Parameter(None, doc="The binding of the moved rig, or None so far.")
+    part = param.Integer(
+        None, allow_None=True, doc="A vertex of the connected component that is looked at."
+    )
+
+    @property
+    def dragged(self) -> Any:
+        """Preview while joints are dragged, before the edits follow; else None."""
+        if self.moved is None:
+            return None
+        binding: Any = self.exact_preview or self.preview
+        return Dragged(self.moved[0], binding or self.binding)
+
+    @property
+    def own_skeleton(self) -> Any:
+        """The skeleton where nothing is edited of it but which joints there are."""
+        if self.own is None:
+            return None
+        return restructured_skeleton(self.own.skeleton, self.edits)[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Dragged:
+    """Preview while joints are dragged.
+
+    Parameters
+    ----------
+    rig : Rig
+        With the joints where the pointer has them.
+    binding : Binding
+        The newest that there is; of joints where they were a moment ago.
+    """
+
+    rig: Rig
+    binding: Binding
+
+
+def applied(own: Rig, edits: Edits) -> Rig:
+    """Return a rig with the joints of its edits, where these put them.
+
+    Parameters
+    ----------
+    own : Rig
+        As it is where nothing is edited.
+    edits : Edits
+
+    Raises
+    ------
+    SkeletonError
+        No joint that may carry weight would be left, or one stands too far from the mesh.
+    """
+    rig = restructured(own, edits)
+    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
+    for joint, name in enumerate(rig.skeleton.names):
+        one = edits.joints.get(name)
+        if one is not None and one.deform is not None:
+            deform[joint] = one.deform
+        if one is not None and one.position is not None:
+            joints[joint] = one.position
+    if not np.array_equal(deform, rig.skeleton.deform):
+        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    return rig.with_joints(joints)
+
+
+def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:
+    """Return what of a state changes with edits and the rig that they make.
+
+    Where the skeleton has other joints, nothing that was computed holds any more, and what was
+    chosen of joints follows them.
+    """
+    changed = {"edits": edits, "rig": rig}
+    if same_structure(state.rig, rig):
+        return changed_only(state, changed)
+    number = _numbers(state.rig, rig)
+    turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
+    joint = number.get(state.joint, 0)
+    return changed_only(state, {**changed, "turns": turns, "joint": joint, "moved": None})
+
+
+def same_structure(one: Rig, other: Rig) -> bool:
+    """Whether two rigs have the same joints by name, each with the same parent."""
+    a, b = one.skeleton, other.skeleton
+    return a.names == b.names and np.array_equal(a.parents, b.parents)
+
+
+def _numbers(before: Rig, after: Rig) -> dict[int, int]:
+    """Return the index after of each joint before that stays, by its index."""
+
+    def keys(rig: Rig) -> list[Any]:
+        names, origin = rig.skeleton.names, rig.origin
+        if origin is None:
+            return list(range(len(names)))
+        return [int(o) if o >= 0 else name for o, name in zip(origin, names, strict=True)]
+
+    a, b = before.skeleton, after.skeleton
+    if np.array_equal(a.parents, b.parents) and np.array_equal(a.joints, b.joints):
+        return {j: j for j in range(len(a.names))}  # some are called otherwise
+    index_of = {key: j for j, key in enumerate(keys(after))}
+    return {j: index_of[key] for j, key in enumerate(keys(before)) if key in index_of}
+
+
+def renamed(edits: Edits, name: str, new: str) -> Edits:
+    """Return edits with a joint called otherwise, wherever they name it."""
+
+    def now(joint: Any) -> Any:
+        return new if joint == name else joint
+
+    one = edits.joints.get(name, JointEdit())
+    was = None if one.added else one.was or name
+    one = replace(one, was=None if was == new else was)
+    edited = {now(key): other for key, other in {**edits.joints, name: one}.items()}
+    joints = {key: replace(other, parent=now(other.parent)) for key, other in edited.items()}
+    return replace(edits.renamed(now), joints=joints)
+
+
+def tidy(edits: Edits) -> Edits:
+    """Return edits without those of joints that change nothing."""
+    nothing = JointEdit()
+    joints = {name: one for name, one in edits.joints.items() if one != nothing}
+    return edits if len(joints) == len(edits.joints) else replace(edits, joints=joints)
+
+
+def vertices_named(edits: Edits) -> int:
+    """Return how many vertices layers name one by one."""
+    lists = [
+        one
+        for layer in edits.layers
+        for one in (layer.mask.vertices, getattr(layer.content, "vertices", None))
+    ]
+    return sum(len(one) for one in lists if one is not None)
+
+
+def changed_only(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
+    """Return what of some choices the state does not hold; param takes the same for new."""
+    large = {name: getattr(state, name) for name in ("rig", "own", "edits", "binding")}
+    return {
+        name: value
+        for name, value in choices.items()
+        if name not in large or not (value is large[name] or value == large[name])
+    }
+
+
+def to_text(edits: Edits) -> str:
+    """Return edits in letters that an address may hold."""
+    packed = zlib.compress(edits.to_json(indent=None).encode(), 9)
+    return base64.urlsafe_b64encode(packed).decode().rstrip("=")
+
+
+def from_text(text: str) -> Edits:
+    """Read what `to_text` returns.
+
+    Raises
+    ------
+    ValueError
+        It is something else.
+    """
+    try:
+        packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
+        plain = zlib.decompressobj().decompress(packed, MAX_BYTES)
+        return Edits.from_json(plain.decode())
+    except (binascii.Error, zlib.error, UnicodeDecodeError, CutcellError) as error:
+        raise ValueError(str(error)) from None

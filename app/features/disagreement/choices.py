@@ -1,0 +1,31 @@
+"""Choices of the list of disagreements, on the panel Compare."""
+
+import re
+from typing import Any
+
+import param
+
+KEY = re.compile(r"[^/,]{1,300}/[^/,]{1,300}/[a-z-]*/\d{1,5}/\d{1,5}")
+"""Keys of settled regions: two methods, and the `Region.key`."""
+
+
+class Choices(param.Parameterized):
+    """Which methods are compared, and which region is looked at."""
+
+    first_method = param.String("", doc="The method that is compared; empty for any.")
+    second_method = param.String("", doc="The method that it is compared with; empty for any.")
+    disagreement: Any = param.Parameter(
+        None, doc="The cutcell_lab.disagreement.Disagreement of both, or None so far."
+    )
+    region = param.String("", doc="Key of the region that is looked at; empty for none.")
+    settled: Any = param.Parameter(
+        (), doc="Keys of the regions, texts like `KEY`, that are listed no more."
+    )
+
+
+def settled_of(text: str) -> tuple[str, ...]:
+    """Read keys of settled regions, separated by commas; raise a ValueError for other texts."""
+    keys = tuple(text.split(","))
+    if not all(map(KEY.fullmatch, keys)):
+        raise ValueError(text)
+    return keys

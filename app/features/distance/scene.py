@@ -1,0 +1,117 @@
+"""The distance from the chosen bone: its field, its sources, and the shortest path to it."""
+
+from dataclasses import replace
+from typing import Any
+
+from cutcell.geodesics import path_length, trace_path
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.distance_scene import distance_colors, distance_limits, file_units
+from cutcell_viewers.marks import path_tube
+from cutcell_viewers.palette import BODY, MARK, SOURCE
+from cutcell_viewers.start_scene import first_distances, start_scene
+
+from ...derive.memo import Memo
+from ...document.state import State
+from ..character import BODY_OPACITY_WITH_PATH, character, cut_of, has_field, in_scene, theme_of
+from ..graph.section import field_section, winding_section
+from .measures import side_by_side
+
+
+def scene(state: State, memo: Memo) -> Description:
+    """Return the scene of the panel Distance: a bone's field, on the surface and inside."""
+    if state.binding is None:
+        return Description(character(state, memo))
+    if has_field(state) and state.measures:
+        return side_by_side(state, memo)
+    cut = cut_of(state)
+    if cut is not None and state.cut_face == "winding":
+        colors, legend, limits = dict[str, Any](), Legend(""), (0.0, 1.0)
+    elif has_field(state):
+        colors, legend, limits = _surface(state, memo)
+    else:
+        return Description(character(state, memo), cut=cut)
+    path = path_of(state, memo)
+    inside = (path is not None and len(path) > 0) or state.starts
+    see = BODY_OPACITY_WITH_PATH if inside and cut is None else 1.0
+    actors = character(state, memo, **colors, film=state.wave, opacity=see)
+    swatches = legend.swatches
+    if cut is not None and state.cut_face == "winding":
+        face, legend = winding_section(state, memo, cut)
+        actors |= face
+        swatches = legend.swatches
+    elif cut is not None:
+        face = field_section(state, memo, cut, state.field, limits)
+        actors |= {name: replace(actor, film=state.wave) for name, actor in face.items()}
+    if state.starts and has_field(state):
+        parts, swatch = _starts(state, memo)
+        actors |= parts
+        swatches += (swatch,)
+    if path is not None and not len(path):
+        swatches += ((MARK, "no path leads from the vertex to the bone"),)
+    elif path is not None:
+        rig = state.rig
+        actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, in_scene(state, path)))
+        swatches += ((MARK, f"shortest path, {file_units(path_length(path), rig)} long"),)
+    if state.wave:
+        swatches += ((BODY, "not reached yet"),)
+    front = state.front * limits[1] if state.wave else None
+    return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
+
+
+def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+    """Return the colours of the body, the legend and the field's limits.
+
+    Distances at vertices are available at once; those inside follow and may be larger.
+    """
+    rig, binding, joint, field = state.rig, state.binding, state.joint, state.field
+    end = state.scale_end
+
+    def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+        if field is None:
+            distances = binding.distances.at(joint, slice(None))
+            limits = distance_limits(distances)
+        else:
+            distances, limits = field[binding.graph.vertex_node], distance_limits(field)
+        limits = (limits[0], end or limits[1])
+        return *distance_colors(rig, distances, joint, limits), limits
+
+    return memo("distance", (rig, binding.distances, field, joint, end), make)
+
+
+def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]]:
+    """Return the samples and sources, and their swatch in the legend."""
+    rig, distances, joint, theme = state.rig, state.binding.distances, state.joint, theme_of(state)
+    inputs = (rig, distances, joint, theme.name)
+    parts = memo("starts", inputs, lambda: start_scene(rig, distances, joint, theme))
+    first = first_distances(distances, joint)
+    most = float(first.max(initial=0))
+    return parts, (SOURCE, f"{len(first)} sources, up to {file_units(most, rig)} from the bone")
+
+
+def path_of(state: State, memo: Memo) -> Any:
+    """Return the shortest path from the clicked vertex to the bone (p, 3), or None."""
+    field = state.field
+    if not state.path or state.vertex is None or field is None:
+        return None
+    inputs = state.binding.distances, state.joint, state.vertex, field
+    return memo("path", inputs, lambda: trace_path(*inputs).points)
+
+
+def farthest(state: State) -> float | None:
+    """Return the greatest visible distance, where the wavefront ends; None if none is known."""
+    if state.measures:
+        measured = [one for name in state.measures if (one := state.measured.get(name)) is not None]
+        return max((distance_limits(one.vertices)[1] for one in measured), default=None)
+    field = state.field
+    return None if field is None else distance_limits(field)[1]
+
+
+def wants_field(state: State) -> bool:
+    """Return whether the scene needs the distance of every node of the graph."""
+    if state.panel == "graph":
+        has_path = state.vertex is not None and state.path
+        has_face = state.cut_across != "off" and state.graph_face == "field"
+        is_needed = state.edge_colors == "distance" or has_path or has_face
+    else:
+        is_needed = state.panel == "distance" and not state.measures
+    return is_needed and has_field(state)

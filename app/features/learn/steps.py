@@ -1,0 +1,290 @@
+"""Commands of the lesson: go to a step, answer it, press its buttons, leave."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell_viewers.camera import Camera
+
+from ...document.address import defaults, from_query
+from ...document.history import History
+from ...document.loading import load_demo, motion, revisit
+from ...document.look import set_camera
+from ...document.recording import begin, restoring
+from ...document.session import Session
+from ..brush.choices import selected
+from ..compare.choices import SINGLE, standard
+from ..compare.scene import title_of, weights_of
+from ..correct.choices import applied, changed_only, changes
+from .lesson import Step
+from .sliders import slide, sliders_of
+
+MAX_ANSWER = 200
+"""Letters of an answer."""
+NO_PATH = "a point that no path reaches"
+"""Answer by a click on a vertex that no path from a bone reaches."""
+
+
+def watch(session: Session) -> None:
+    """Take clicks on the body and on bones for answers where a step asks for them."""
+    follow = session.state.param.watch
+    follow(lambda *events: _answer_by_click(session, "vertex"), "vertex")
+    follow(lambda *events: _answer_by_click(session, "joint"), "joint")
+    follow(lambda *events: _prepare(session), "binding")
+
+
+def go(session: Session, index: int) -> None:
+    """Show a step of the lesson; -1 leaves it and restores the page as it was before."""
+    state = session.state
+    if not 0 <= index < len(state.lesson):
+        leave(session)
+        return
+    if state.step < 0 and state.rig is not None:
+        camera = None if session.view.at_home else session.view.camera
+        session.before_lesson = session.history, session.history.now, camera
+    step = state.lesson[index]
+    demo = step.demo or state.demo
+    state.param.update(step=index, demo=demo)  # together: one entry of the browser's history
+    show(session, step.scene(index in state.answers))
+
+
+def leave(session: Session) -> None:
+    """End the lesson, and restore the character, the choices and the camera.
+
+    A character that a person opened during the lesson stays, with its choices.
+    """
+    state, step = session.state, session.state.lesson_step
+    before, session.before_lesson = session.before_lesson, None
+    state.param.update(step=-1, staged=False, brush=False)
+    if before is None:
+        return
+    history, choices, camera = before
+    of_lesson = step.characters if step else []
+    if session.character in (choices["character"], *of_lesson):
+        session.history = history
+        revisit(session, choices)
+        if choices["character"] == session.character:
+            set_camera(session, camera)
+
+
+def answer(session: Session, value: Any) -> None:
+    """Commit to an answer of the step; an empty text shows the answer without one."""
+    state, step = session.state, session.state.lesson_step
+    if step is None or state.step in state.answers:
+        return
+    if step.answer.kind == "paint" and value:
+        value = painted_score(state, step)
+    number = isinstance(value, int | float) and bool(np.isfinite(value))
+    state.answers = {**state.answers, state.step: value if number else str(value)[:MAX_ANSWER]}
+    view = session.view
+    camera = None if view.at_home or "camera=" in step.reveal else view.camera
+    state.brush = False
+    show(session, step.scene(True), camera)
+
+
+def offer(session: Session, index: int) -> None:
+    """Choose what a button of the step says."""
+    state = session.state
+    queries = _offers(state)
+    if 0 <= index < len(queries) and state.rig is not None:
+        choices, arrival, _ = from_query(queries[index], state)
+        if "rig" in arrival and state.lesson_step is not None:
+            show(session, f"{state.lesson_step.scene(True)}&{queries[index]}")
+            return
+        moves = motion(session, choices.get("panel", state.panel), arrival)
+        state.param.update(**choices, **of_character(state, arrival), **moves)
+        if "camera" in arrival:
+            set_camera(session, _camera(arrival))
+
+
+def choose(session: Session, name: str, value: Any) -> None:
+    """Set a choice that the text of the step names."""
+    step = session.state.lesson_step
+    if step is not None and name in step.named:
+        slide(session, name, value)
+
+
+def pressed_offers(state: Any) -> list[bool]:
+    """Return for each button of the step whether what it chooses is chosen."""
+    pressed = []
+    if state.rig is None:
+        return [False for _ in _offers(state)]
+    for query in _offers(state):
+        choices, arrival, _ = from_query(query, state)
+        choices = {**choices, **of_character(state, arrival)}
+        is_open = state.demo == arrival.get("rig", state.demo)
+        chosen = all(getattr(state, name) == value for name, value in choices.items())
+        pressed.append(is_open and chosen)
+    return pressed
+
+
+def named_values(state: Any) -> dict[str, dict[str, Any]]:
+    """Return the choices that the text of the step names, as sliders of `sentence.js`."""
+    step = state.lesson_step
+    return {} if step is None else sliders_of(state, step.text)
+
+
+def show(session: Session, query: str, camera: Camera | None = None) -> None:
+    """Show the scene of an address, and its character; a camera replaces that of the address."""
+    state = session.state
+    choices, arrival, _ = from_query(query, state)
+    arrival = {name: value for name, value in arrival.items() if name not in ("step", "answer")}
+    if camera is not None:
+        arrival["camera"] = [*camera.position, *camera.focal_point]
+    demo = arrival.get("rig", "")
+    is_open = state.rig is not None and demo in ("", session.character.removeprefix("demo "))
+    if is_open:
+        _show_open(session, choices, arrival)
+        return
+    session.history, session.returning = History({}), True
+    session.arrival = {"methods": standard(None), **arrival}
+    start = {n: v for n, v in defaults(state).items() if n not in ("methods", *SINGLE)}
+    chosen = {**start, **choices}
+
+    def choose_too() -> None:
+        state.param.update(**chosen)
+
+    load_demo(session, demo, choose_too, lambda: _prepare(session))
+
+
+def _show_open(session: Session, choices: dict[str, Any], arrival: dict[str, Any]) -> None:
+    state = session.state
+    scene = {
+        **defaults(state), "vertex": None, "node": None, "part": None,
+        "panel": state.panel, **dict.fromkeys(("moving", "playing", "animating"), False),
+        **choices,
+    }  # fmt: skip
+    rig = applied(state.own, scene["edits"])
+    scene |= changes(state, rig, scene["edits"])
+    scene |= {**of_character(state, arrival), **motion(session, scene["panel"], arrival)}
+    with restoring(session):
+        state.param.update(**changed_only(state, scene))
+    set_camera(session, _camera(arrival))
+    begin(session, "")
+    _prepare(session)
+
+
+def of_character(state: Any, arrival: dict[str, Any]) -> dict[str, Any]:
+    """Return what an address says of the open character, as parameters of the state."""
+    names = list(state.rig.skeleton.names)
+    own = ("vertex", "clip", "methods", *SINGLE, "settled", "turns")
+    plain: dict[str, Any] = {name: arrival[name] for name in own if name in arrival}
+    if arrival.get("bone") in names:
+        plain["joint"] = names.index(arrival["bone"])
+    return plain
+
+
+def _prepare(session: Session) -> None:
+    """Give the brush where the step asks for paint."""
+    state, step = session.state, session.state.lesson_step
+    if step is None or step.answer.kind != "paint" or state.step in state.answers:
+        return
+    if state.binding is None or state.brush:
+        return
+    colors = state.pose_colors
+    state.brush_selection = None
+    state.param.update(brush=True, brush_mode="select", brush_mirrored=False)  # one side is asked
+    state.pose_colors = colors  # the brush shows weights: they would be the answer
+
+
+def painted_score(state: Any, step: Step) -> float:
+    """Return the agreement of the painted vertices with what a joint and those below it move.
+
+    It is the number of vertices in both, over that of vertices in either.
+    """
+    painted = selected(state)
+    if painted is None or state.weights is None:
+        return 0.0
+    return _agreement(painted, branch_weights(state, step.answer.joint))
+
+
+def painted_scores(state: Any) -> dict[str, float]:
+    """Return the same for each method that is compared, by its title."""
+    step, painted = state.lesson_step, selected(state)
+    if step is None or step.answer.kind != "paint" or painted is None or state.panel != "compare":
+        return {}
+    tables = {name: weights_of(state, name) for name in state.methods}
+    return {
+        title_of(name): _agreement(painted, branch_weights(state, step.answer.joint, table))
+        for name, table in tables.items()
+        if table is not None
+    }
+
+
+def _agreement(painted: NDArray[np.bool_], weights: NDArray[np.float64]) -> float:
+    moves = weights > 0.5
+    return float((painted & moves).sum() / max((painted | moves).sum(), 1))
+
+
+def branch_weights(
+    state: Any, name: str, weights: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """Return the weight of a joint and of all joints below it, shape (n,)."""
+    skeleton, file = state.rig.skeleton, state.rig.weights
+    below = skeleton.subtree[skeleton.names.index(name)]
+    table = weights if weights is not None else state.weights if file is None else file
+    total: NDArray[np.float64] = table[:, below].sum(1)
+    return total
+
+
+def asks_to_act(state: Any) -> bool:
+    """Return whether the step waits for what a person does in the picture."""
+    return task(state) == "open"
+
+
+def task(state: Any) -> str:
+    """Return "open" or "done" where the step asks for an act in the picture, else ""."""
+    step = state.lesson_step
+    if step is None or step.answer.kind != "act":
+        return ""
+    return "done" if state.step in state.answers else "open"
+
+
+def points_out(state: Any) -> bool:
+    """Return whether the chosen vertex needs no card: the lesson chose it, or waits for an answer.
+
+    The card of a vertex would give the answer away.
+    """
+    step = state.lesson_step
+    if step is None or state.vertex is None:
+        return False
+    if state.step not in state.answers:
+        return True
+    _, arrival, _ = from_query(step.scene(True), state)
+    return bool(arrival.get("vertex") == state.vertex)
+
+
+def _answer_by_click(session: Session, kind: str) -> None:
+    state, step = session.state, session.state.lesson_step
+    if session.restoring or step is None or step.answer.kind != kind or state.rig is None:
+        return
+    index = state.joint
+    if kind == "vertex":
+        if state.vertex is None or state.weights is None:
+            return
+        index = followed(state)[state.vertex]
+    answer(session, clickable(state)[index])
+
+
+def clickable(state: Any) -> list[str]:
+    """Return the answers that clicks give: the joints, and `NO_PATH`."""
+    return [*state.rig.skeleton.names, NO_PATH]
+
+
+def followed(state: Any) -> NDArray[np.uint16]:
+    """Return the answer by a click on each vertex, as an index of `clickable`, shape (n,)."""
+    joints = state.weights.argmax(axis=1)
+    if state.binding is not None:
+        joints[state.binding.distances.fallback != 0] = len(state.rig.skeleton.names)
+    return joints.astype(np.uint16)
+
+
+def _offers(state: Any) -> list[str]:
+    step = state.lesson_step
+    return [] if step is None else list(step.offers.values())
+
+
+def _camera(arrival: dict[str, Any]) -> Camera | None:
+    numbers = arrival.get("camera")
+    return None if numbers is None else Camera(tuple(numbers[:3]), tuple(numbers[3:]))

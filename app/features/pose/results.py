@@ -1,0 +1,141 @@
+"""Motions, turning by hand, and how far the two weightings are apart."""
+
+from typing import Any
+
+from cutcell.errors import CutcellError
+from cutcell.pose import axis_rotation
+from cutcell_lab.metrics import motion_error, scene_error
+from cutcell_viewers.error_scene import gap_between
+from cutcell_viewers.pose_scene import clip_in_scene
+
+from ...derive.derived import Derived
+from ...document.session import Session
+from ...document.state import State
+from .materials import MATERIALS
+from .scene import angles_of, clip_of, clip_part, has_rival, rotation_of
+
+TURN_DEGREES = 30.0
+"""How far a joint turns when a bad turn is looked at: as in the deformation error."""
+
+
+def watch(session: Session) -> None:
+    """Connect the rings and the play button of the view."""
+    hand = Hand(session)
+    session.view.listen("turn", hand.turn)
+    session.view.listen("play", lambda data: session.state.param.update(playing=bool(data["on"])))
+
+
+def motion_part(session: Session) -> dict[str, Any] | None:
+    """Return the motion that is on, or None."""
+    state = session.state
+    clip = clip_of(state)
+
+    def make() -> dict[str, Any] | None:
+        try:
+            return clip_part(state, clip)
+        except CutcellError as error:  # the clip cannot be played
+            session.fail(error)
+            return None
+
+    part: dict[str, Any] | None = session.memo(
+        "clip", (state.rig, clip is None, state.motion), make
+    )
+    return part
+
+
+class Hand:
+    """Slots joints as the rings on the canvas are dragged.
+
+    Parameters
+    ----------
+    session : Session
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._state = session.state
+        self._last_turn = (0.0, 0.0, 0.0)
+
+    def turn(self, data: dict[str, Any]) -> None:
+        """Turn a joint about one of its local axes.
+
+        Parameters
+        ----------
+        data : dict
+            The number of the "joint", of the "axis", the "degrees" since it was taken hold
+            of, and "begin" where that was just now.
+        """
+        state, joint = self._state, int(data["joint"])
+        if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
+            return
+        now = state.turns.get(joint, (0.0, 0.0, 0.0))
+        if data.get("begin"):
+            self._last_turn = now
+        axis = "xyz"[int(data["axis"])]
+        rotation = rotation_of(self._last_turn) @ axis_rotation(axis, float(data["degrees"]))
+        turns = {**state.turns, joint: angles_of(rotation, now)}
+        state.param.update(turns=turns, moving=False, playing=False)
+
+
+def turn_joint(session: Session, axis: int, degrees: float) -> None:
+    """Set one of the chosen joint's three angles."""
+    state = session.state
+    angles = list(state.turns.get(state.joint, (0.0, 0.0, 0.0)))
+    if angles[axis] == degrees and not state.moving:
+        return
+    angles[axis] = degrees
+    turns = {**state.turns, state.joint: tuple(angles)}
+    state.param.update(turns=turns, moving=False, playing=False)
+
+
+def show_turn(session: Session, joint: int, axis: str) -> None:
+    """Show one of the worst turns: that joint alone, turned, and the error in colours."""
+    angles = tuple(TURN_DEGREES * float(axis == one) for one in "xyz")
+    session.state.param.update(
+        joint=joint, axis=axis, turns={joint: angles}, moving=False, playing=False, heat=True
+    )
+
+
+def rest(session: Session) -> None:
+    """Put the character back as it was in the file."""
+    session.state.param.update(turns={}, moving=False, playing=False)
+
+
+def play(session: Session) -> None:
+    """Start the chosen motion, or halt it."""
+    state = session.state
+    state.param.update(moving=True, playing=not (state.moving and state.playing))
+
+
+def _both(state: State) -> tuple[Any, ...] | None:
+    """Return the two weightings that are compared, where there are two."""
+    return (state.rig, state.binding) if has_rival(state) else None
+
+
+def _motion(state: State) -> tuple[Any, ...] | None:
+    both, clip = _both(state), clip_of(state)
+    if both is None or clip is None:
+        return None
+    # A swing is a new clip each time: it is named by the joint and the axis.
+    return *both, state.blending, state.motion, None if state.clip < 0 else clip
+
+
+RESULTS = (
+    Derived(
+        "errors",
+        _both,
+        lambda rig, binding, progress: scene_error(rig, binding.weights, rig.weights, progress),
+        wanted=lambda state: state.panel == "pose",
+    ),
+    Derived(
+        "motion_error",
+        _motion,
+        lambda rig, binding, blending, motion, clip, swung, progress: motion_error(
+            clip_in_scene(rig, swung),
+            gap_between(rig, binding.weights, rig.weights, blending),
+            progress,
+        ),
+        wanted=lambda state: state.panel == "pose" and state.heat,
+        more=lambda state: (clip_of(state),),
+    ),
+    MATERIALS,
+)

@@ -1,0 +1,216 @@
+"""The character in a pose or a motion, by the computed weights and by those of the file."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cutcell.pose import axis_rotation
+from cutcell.pose.skin import Gap, Skin
+from cutcell.rig import Clip
+from cutcell_viewers.character import body, pose_in_scene
+from cutcell_viewers.description import Actor, Apart, Description, Legend
+from cutcell_viewers.error_scene import (
+    error_legend,
+    error_limits,
+    error_look,
+    gap_between,
+    millimetres,
+)
+from cutcell_viewers.materials import Textures
+from cutcell_viewers.palette import GHOST
+from cutcell_viewers.pose_scene import joint_turns, swing
+
+from ...derive.memo import Memo
+from ...document.state import PANELS, State
+from ..character import character
+from ..select.scene import isolated, selection_marks
+from ..weights.scene import weights_look, weights_seen
+
+SWING_DEGREES = 50.0
+GHOST_OPACITY = 0.38
+MAX_NUMBERS = 2**22
+"""Largest motion that is sent to the browser (16 MB); longer ones are sent with fewer frames."""
+TOGETHER = 64
+"""Number of frames that are sampled at a time."""
+VIEWS = ("cutcell", "Weights from the file")
+
+
+def scene(state: State, memo: Memo) -> Description:
+    """Return the scene of the panel Pose."""
+    placed = pose_of(state)
+    textures = textures_of(state)
+    style, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
+    if state.heat and has_rival(state):
+        style, legend = _error_colours(state, memo, error_limits_of(state, placed, memo))
+        coloured = False
+    actors = character(state, memo, bones_coloured=coloured, **style)
+    actors = isolated(state, memo, actors)
+    actors |= selection_marks(state, memo, actors["body"])
+    if textures is not None:
+        actors |= _attachments_in_materials(actors, textures)
+    description = Description(
+        actors, pose=placed, legend=legend, images=None if textures is None else textures.images
+    )
+    if state.rival == "alone" or not has_rival(state):
+        return description
+    reference = rival_of(state, memo)
+    if state.rival == "ghost":
+        reference = replace(reference, color=GHOST, opacity=GHOST_OPACITY, behind=True)
+        return replace(description, actors={**actors, "rival": reference})
+    actors["body"] = replace(actors["body"], view=0)
+    file_style = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
+    reference = replace(reference, view=1, **file_style)
+    return replace(description, actors={**actors, "rival": reference}, views=VIEWS)
+
+
+def _error_colours(
+    state: State, memo: Memo, limits: tuple[float, float]
+) -> tuple[dict[str, Any], Legend]:
+    rig, count = state.rig, len(state.rig.mesh.vertices)
+    skin = memo("apart", (rig,), lambda: Apart(Skin.of_weights(rig.weights), millimetres(rig)))
+    style = memo("error look", (rig, limits[1]), lambda: error_look(count, skin, limits))
+    return style, error_legend(limits)
+
+
+def textures_of(state: State) -> Textures | None:
+    """Return the materials of the character's file, if they are shown."""
+    is_error = state.heat and has_rival(state)
+    return None if is_error or state.pose_colors != "materials" else state.materials
+
+
+def _attachments_in_materials(actors: dict[str, Actor], textures: Textures) -> dict[str, Actor]:
+    colors = {f"attachment {i}": one for i, one in enumerate(textures.attachments)}
+    return {name: replace(actors[name], materials=one) for name, one in colors.items()}
+
+
+def _colours(
+    state: State, memo: Memo, weights: Any, name: str
+) -> tuple[dict[str, Any], Legend | None, bool]:
+    """Return the colours of a moving body by its materials, once these are read, or by weights."""
+    textures = textures_of(state)
+    if textures is not None:
+        return {"materials": textures.body}, None, False
+    if state.pose_colors == "plain" or weights is None:
+        return {}, None, False
+    return weights_look(state, memo, weights, name)
+
+
+def has_rival(state: State) -> bool:
+    """Return whether there are two weightings: the computed one and that of the file."""
+    return state.binding is not None and state.rig.weights is not None
+
+
+def rival_of(state: State, memo: Memo) -> Actor:
+    """Return the body as the file's own weights move it."""
+    return memo("rival", (state.rig,), lambda: body(state.rig, state.rig.weights))
+
+
+def gap_of(state: State, memo: Memo) -> Gap:
+    """Return the function of the distance between the two weightings in a pose."""
+    rig, weights, blending = state.rig, state.binding.weights, state.blending
+    inputs = (rig, state.binding, blending)
+    return memo("gap", inputs, lambda: gap_between(rig, weights, rig.weights, blending))
+
+
+def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
+    """Return the root mean square and greatest error in mm of the pose or motion, if known."""
+    if not has_rival(state):
+        return None
+    if state.moving:
+        error = state.motion_error
+        return error and error[:2]
+    placed = pose_of(state)
+    if placed is None:
+        return (0.0, 0.0)
+    lengths = lengths_of(state, placed, memo)
+    return float(np.sqrt(np.square(lengths).mean())), float(lengths.max())
+
+
+def lengths_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
+    """Return the error of each vertex in the pose of the sliders, in mm."""
+    inputs = (state.binding, state.turns, state.blending)
+    return memo("error", inputs, lambda: gap_of(state, memo).lengths(placed))
+
+
+def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tuple[float, float]:
+    """Return the range of the error's colours, with round numbers."""
+    if state.moving:
+        error = state.motion_error
+        return error_limits([0.0 if error is None else error[2]])
+    return error_limits([0.0] if placed is None else lengths_of(state, placed, memo))
+
+
+def pose_of(state: State) -> np.ndarray | None:
+    """Return the pose that the sliders make, shape (j, 4, 4); None at rest or in motion."""
+    from cutcell import forward_kinematics
+
+    if state.moving or not state.posed:
+        return None
+    rotations = {joint: rotation_of(angles) for joint, angles in state.turns.items() if any(angles)}
+    transforms = forward_kinematics(state.rig.skeleton, joint_turns(state.rig, rotations))
+    return pose_in_scene(state.rig, transforms)
+
+
+def rotation_of(angles: tuple[float, float, float]) -> np.ndarray:
+    """Return the rotation of a joint (3, 3) that is turned by degrees about x, y, then z."""
+    x, y, z = angles
+    return axis_rotation("z", z) @ axis_rotation("y", y) @ axis_rotation("x", x)
+
+
+def angles_of(
+    rotation: np.ndarray, near: tuple[float, float, float] = (0, 0, 0)
+) -> tuple[float, float, float]:
+    """Return those degrees about x, y and z of a rotation that are nearest to some others."""
+    y = np.arcsin(np.clip(-rotation[2, 0], -1, 1))
+    if abs(rotation[2, 0]) > 1 - 1e-9:
+        # Only the sum or difference of the other two counts here: z keeps its value.
+        z = np.radians(near[2])
+        x = np.sign(y) * z + np.arctan2(np.sign(y) * rotation[0, 1], rotation[1, 1])
+    else:
+        x = np.arctan2(rotation[2, 1], rotation[2, 2])
+        z = np.arctan2(rotation[1, 0], rotation[0, 0])
+    one = np.degrees([x, y, z])
+    other = np.degrees([x + np.pi, np.pi - y, z + np.pi])
+    # The shortest way round; half a turn keeps its sign.
+    ways = [(option - near + 180) % 360 - 180 for option in (one, other)]
+    best = near + min(ways, key=lambda way: float(np.abs(way).sum()))
+    best -= 360 * np.round(best / 360 * (1 - 1e-12))
+    return tuple(float(round(angle, 1)) + 0.0 for angle in best)  # type: ignore[return-value]
+
+
+def clip_of(state: State) -> Clip | None:
+    """Return the current motion: a clip of the rig, or a swing of the chosen joint."""
+    if not state.moving or state.rig is None or not PANELS[state.panel].poses:
+        return None
+    if 0 <= state.clip < len(state.rig.clips):
+        return state.rig.clips[state.clip]
+    return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
+
+
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict[str, Any] | None:
+    """Return a motion as a message for the view, with a limited number of numbers."""
+    if clip is None or not len(times := clip.times):
+        return None
+    most = max(limit // max(16 * clip.joints, 1), 2)
+    if len(times) > most:
+        times = np.linspace(0, clip.duration, most)
+    matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)
+    for first in range(0, len(times), TOGETHER):
+        frames = slice(first, first + TOGETHER)
+        matrices[frames] = pose_in_scene(state.rig, clip.sample(times[frames]))
+    return {"times": times, "matrices": matrices.ravel()}
+
+
+def gizmo_part(state: State) -> dict[str, Any] | None:
+    """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
+    if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
+        return None
+    rig, joint = state.rig, state.joint
+    centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]
+    return {
+        "joint": joint,
+        "joints": len(rig.skeleton.joints),
+        "centre": centre.tolist(),
+        "below": np.flatnonzero(rig.skeleton.subtree[joint]).astype(np.int32),
+    }

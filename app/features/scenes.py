@@ -1,0 +1,75 @@
+"""Scenes of the state: pure functions, one for each panel."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
+from typing import Any
+
+from cutcell.pose.skin import Skin
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
+
+from ..derive.memo import Memo
+from ..document.state import PANELS, State
+
+__all__ = ["SCENES", "Memo", "following", "resolve"]
+
+SCENES: dict[str, Callable[[State, Memo], Description]] = {
+    panel: import_module(f"{__package__}.{panel}.scene").scene for panel in PANELS
+}
+"""The scene of each panel, for a state with a rig."""
+
+RIGID = "parts fixed to one bone"
+"""Legend of the grey parts of a coloured body."""
+
+
+def resolve(state: State, memo: Memo | None = None) -> Description:
+    """Return the scene of a state; a memo only speeds up a series of calls."""
+    if state.rig is None:
+        return Description()
+    panel = state.panel if state.is_panel_usable else "graph"
+    whole = SCENES[panel](state, memo or Memo())
+    blending: Any = state.blending if PANELS[panel].poses else "linear"
+    whole = replace(whole, actors={**whole.actors, **state.actors}, blending=blending)
+    if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
+        return whole
+    swatches = (*whole.legend.swatches, (ATTACHMENT, RIGID))
+    return replace(whole, legend=replace(whole.legend, swatches=swatches))
+
+
+def following(state: State, memo: Memo | None = None) -> Description:
+    """Return the scene of a state with weights during a motion.
+
+    The body follows the joints on every panel; actors that cannot follow are left out, and the body
+    need not be transparent for them.
+    """
+    memo = memo or Memo()
+    whole = resolve(state, memo)
+    actors = dict(whole.actors)
+    bodies = [name for name in actors if name.startswith("body") and actors[name].skin is None]
+    if bodies:
+        # The same entry of the memo as in `character`.
+        inputs = (state.rig, state.weights)
+        skin = memo("skin", inputs, lambda: Skin.of_weights(state.weights))
+        actors |= {name: replace(actors[name], skin=skin) for name in bodies}
+    actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
+    if not PANELS[state.panel].poses:
+        for name in actors:
+            if name.startswith(("body", "attachment")):
+                actors[name] = replace(actors[name], visible=True, opacity=1.0)
+    legend = _left_of(whole.legend, actors)
+    return replace(whole, actors=actors, cut=None, legend=legend, blending=state.blending)
+
+
+def _left_of(legend: Legend | None, actors: dict[str, Actor]) -> Legend | None:
+    """Return a legend without edges, sources and paths, which do not move."""
+    if legend is None or not _coloured(actors):
+        return None
+    static = (MARK, SOURCE)
+    return replace(legend, swatches=tuple(one for one in legend.swatches if one[0] not in static))
+
+
+def _coloured(actors: dict[str, Actor]) -> bool:
+    """Return whether a body is coloured."""
+    bodies = [actor for name, actor in actors.items() if name.startswith("body")]
+    return any(body.colors is not None or body.scalars is not None for body in bodies)

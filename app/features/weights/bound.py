@@ -1,0 +1,78 @@
+"""Distances of a character, and weights of many influences that are computed with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from scipy.sparse import csr_array
+
+import cutcell
+from cutcell.binding import Binding
+from cutcell.editing import Computed
+from cutcell.editing.bind import computed_steps
+from cutcell.graph import CutCellGraph
+from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
+from cutcell.runtime.threads import cancellable
+from cutcell.weights.context import Context, run
+
+graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
+"""How long each graph took."""
+
+
+@dataclass(frozen=True, eq=False)
+class Influences:
+    """Weights of many influences: sparse, as most of an (n, j) matrix is zero.
+
+    Parameters
+    ----------
+    options : dict
+        The options that turned distances into these weights.
+    weights : csr_array, shape (n, j), float64
+    strongest : dict
+        The few that were kept last, by greatest number and threshold: most changes are of layers.
+    """
+
+    options: dict[str, Any]
+    weights: csr_array
+    strongest: dict[tuple[Any, ...], csr_array] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Bound:
+    """Distances of the open character, and the weights that were computed with them.
+
+    Parameters
+    ----------
+    binding : Binding
+        Without its weights, which are those of `influences`.
+    influences : Influences
+    """
+
+    binding: Binding
+    influences: Influences
+
+
+def bind_wide(
+    rig: Rig,
+    graph: CutCellGraph,
+    reach: Computed,
+    options: dict[str, Any],
+    falloff: dict[str, Any],
+    progress: Progress,
+) -> Bound:
+    """Compute distances, and weights of many influences."""
+    method = cutcell.ANIMATION.with_options(**options)
+
+    def work(report: Progress) -> Context:
+        steps = computed_steps(rig, method, reach, graph)
+        return run(steps, Context(method, rig.allowed, report, scaled=False))
+
+    context = cancellable(work, progress, "distances")
+    seconds = {**context.seconds, "graph": graph_seconds.get(graph, 0.0)}
+    none = np.empty((0, len(rig.skeleton.names)))
+    binding = Binding(none, graph, context.distances, seconds, (), method)
+    return Bound(binding, Influences(falloff, csr_array(context.weights)))

@@ -1,0 +1,69 @@
+"""Choices of the panel Weights."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+
+from cutcell.method import FALLOFFS
+
+from ...document.method import default
+from ..panel import Panel
+
+MOST = 8
+"""Influences that a vertex is measured for, and the most that can be chosen."""
+
+SHOWN = ("bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry")
+
+FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
+
+PANEL = Panel(
+    "Weights",
+    '<circle cx="12" cy="12" r="8.5"/><path d="M12 3.5v17M12 7.5h7M12 12h8.5M12 16.5h7"/>',
+    paints=True,
+)
+
+
+class Choices(param.Parameterized):
+    """Which weights are seen, and how they fall with distance."""
+
+    weights_shown: param.Selector[str] = param.Selector(default="mix", objects=list(SHOWN))
+    weights_of: param.Selector[str] = param.Selector(
+        default="ours",
+        objects={"Current": "ours", "Original": "file"},
+        doc="Weights that the colours show.",
+    )
+    truth: param.Selector[str] = param.Selector(
+        default="file",
+        objects={"Reference: file": "file", "Reference: computed": "ours"},
+        doc="Weights that the others are measured against.",
+    )
+
+    weight_scale: param.Selector[str] = param.Selector(
+        default="linear",
+        objects={"Linear": "linear", "Log": "log", "Above limit": "limit"},
+        doc="How colours show the weight of the chosen joint: one of `WEIGHT_SCALES`.",
+    )
+    weight_limit = param.Number(0.05, bounds=(0, 1), step=0.005, label="Limit")
+    weight_outline = param.Boolean(True, label="Outline where not zero")
+
+    explain = param.Boolean(
+        False, doc="Whether the card says how the chosen vertex comes to its weights."
+    )
+    explanation: Any = param.Parameter(
+        None, doc="What `cutcell.explain` returns for the chosen vertex, or None so far."
+    )
+
+    falloff: param.Selector[str] = param.Selector(
+        default=default("falloff"),
+        objects={FALLOFF_TITLES.get(name, name.capitalize()): name for name in FALLOFFS},
+    )
+    alpha = param.Number(default("alpha"), bounds=(0, 1), step=0.01, label="Smoothness α")
+    max_influences = param.Integer(
+        default("max_influences"), bounds=(1, MOST), label="Max influences"
+    )
+    threshold = param.Number(
+        default("threshold"), bounds=(0, 1), softbounds=(0, 0.3), step=0.005,
+        label="Ignore weights below",
+    )  # fmt: skip

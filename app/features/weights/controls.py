@@ -1,0 +1,87 @@
+"""Weights: how much each bone holds, and how it falls with distance."""
+
+from typing import Any
+
+import numpy as np
+import panel_material_ui as pmui
+
+from ...document.state import State
+from ...widgets import controls as ui
+from ..brush.controls import BRUSH
+from ..correct.component_controls import COMPONENTS
+from ..correct.controls import EDITS
+from ..correct.joint_controls import JOINTS
+from ..layers.controls import LAYERS
+from ..select.controls import SELECTION, WEIGHT_SCALE
+from ..symmetry.controls import SYMMETRY
+
+SHOWN = {
+    "All bones": "mix",
+    "Dominant bone": "dominant",
+    "Selected bone": "bone",
+    "Influences per vertex": "count",
+    "Symmetry": "symmetry",
+}
+DIFFERENCE = {
+    "Difference from the file's": "difference",
+    "Difference of the selected bone": "bone_difference",
+}
+
+
+def _colours(state: Any) -> dict[str, Any]:
+    """Return the choices of colours, and the chosen one."""
+    options = {**SHOWN, **(DIFFERENCE if ui.has_weights(state) else {})}
+    field = state.weights_shown
+    return {"options": options, "value": field if field in options.values() else "mix"}
+
+
+def _is_difference(state: Any) -> bool:
+    return state.weights_shown in DIFFERENCE.values()
+
+
+def _is_signed(state: Any) -> bool:
+    return bool(state.weights_shown == "bone_difference")
+
+
+def summary(state: State) -> str:
+    """Return what there is to say of the weights in a line."""
+    if state.binding is None:
+        return ""
+    weights = state.binding.weights
+    positive = np.flatnonzero(weights > 0)
+    text = f"{len(positive) / max(len(weights), 1):.1f} influences per vertex"
+    file_weights = state.rig.weights
+    if file_weights is not None and file_weights.shape == weights.shape:
+        # |a - b| = a + b - 2 min(a, b), and the minimum is zero wherever a is: nearly everywhere.
+        both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
+        difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
+        text += f", {100 * difference:.0f}% different from the file"
+    return text + "."
+
+
+CONTROLS = ui.column(
+    ui.intro("How strongly each bone moves the skin."),
+    ui.section(
+        "",
+        ui.select("weights_shown", "Colour by", shows=_colours),
+        ui.choice("weights_of", visible=lambda s: ui.has_weights(s) and not _is_difference(s)),
+        WEIGHT_SCALE,
+        ui.choice("truth", visible=lambda s: ui.has_weights(s) and _is_signed(s)),
+        SYMMETRY,
+        ui.caption(summary, late=("binding", "rig")),
+        top=0,
+    ),
+    BRUSH,
+    SELECTION,
+    LAYERS,
+    JOINTS,
+    ui.folded(
+        "Falloff",
+        ui.choice("falloff"),
+        ui.slider("alpha", visible=lambda s: s.falloff == "paper"),
+        ui.slider("max_influences", pmui.IntSlider),
+        ui.slider("threshold"),
+    ),
+    COMPONENTS,
+    EDITS,
+)

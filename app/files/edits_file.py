@@ -1,0 +1,77 @@
+"""Edits that are too long for an address, stored among the uploads by a key."""
+
+from cutcell.editing import Edits
+from cutcell.errors import CutcellError
+
+from ..features.correct.choices import (
+    MAX_IN_ADDRESS,
+    MAX_VERTICES,
+    from_text,
+    to_text,
+    vertices_named,
+)
+from .upload_cache import Group, PageUploads
+
+KEY = "~"
+"""Prefix of keys; no text of edits begins with it."""
+
+
+class EditsFile:
+    """The file of one page's edits, if they are long."""
+
+    def __init__(self, uploads: PageUploads) -> None:
+        self._uploads = uploads
+        self._group: Group | None = None
+        self._key = ""
+        self._last_text: tuple[Edits, str] = (Edits(), "")
+
+    def text_of(self, edits: Edits) -> str:
+        """Return edits for an address: all of them, or a key; "" for none."""
+        if edits is not self._last_text[0]:
+            few = vertices_named(edits) <= MAX_VERTICES
+            text = to_text(edits) if edits and few else ""
+            if not few or len(text) > MAX_IN_ADDRESS:
+                self._last_text = (edits, "")  # do not try again after an error
+                text = self._store(edits)
+            self._last_text = (edits, text)
+        return self._last_text[1]
+
+    def read(self, text: str) -> Edits | None:
+        """Return the edits of an address; None if the server no longer has them."""
+        if not text.startswith(KEY):
+            return from_text(text)
+        paths = self._uploads.cache.take(text[1:])
+        if paths is None:
+            return None
+        self._leave()
+        self._key = text[1:]
+        try:
+            loaded = Edits.load(paths[0])
+        except CutcellError as error:
+            raise ValueError(str(error)) from None
+        self._last_text = (loaded, text)
+        return loaded
+
+    def close(self) -> None:
+        """Stop using the files, which are kept for a while."""
+        self._leave()
+        if self._group is not None:
+            self._uploads.cache.leave(self._group.key)
+            self._group = None
+
+    def _leave(self) -> None:
+        if self._key:
+            self._uploads.cache.leave(self._key)
+            self._key = ""
+
+    def _store(self, edits: Edits) -> str:
+        content = edits.to_json(indent=None).encode()
+        old, self._group = self._group, None
+        if old is not None:
+            self._uploads.cache.leave(old.key)
+        group = self._uploads.cache.begin(len(content), self._uploads)
+        path = group.folder / "edits.json"
+        path.write_bytes(content)
+        group.paths = [path]
+        self._group = group
+        return KEY + group.key

@@ -1,0 +1,110 @@
+// Rays through a flat section: crossings along one, and winding numbers. See `flat_modes.js`.
+
+import {isKept, pieceAt, runs, sumAt} from "./flat_search.js"
+import {windingText} from "./flat_draw.js"
+
+const NEAR_HOLE = 0.3  // winding number
+
+const clamped = (x, low, high) => Math.min(Math.max(x, low), high)
+const signed = (step) => step > 0 ? "+1" : "−1"
+
+export class Rays {
+  constructor(scene) {
+    this.scene = scene
+    this.ways = [0, 1].map((way) => scene.data.rays.filter((ray) => ray.way === way))
+    scene.lit = new Set()
+    this.index = this.ways.map((rays) => Math.floor(rays.length / 2))
+    this.turn(this.ways[0].length ? 0 : 1)
+    if (scene.mode === "winding") { this.findFraction() }
+  }
+
+  // Begins near a hole, where there is one.
+  findFraction() {
+    const {rays} = this.scene.data
+    const away = ([, , winding]) => Math.abs(winding - NEAR_HOLE)
+    const [least, ray, piece] = rays
+      .flatMap((ray) => ray.pieces.map((piece) => [away(piece), ray, piece]))
+      .reduce((best, other) => other[0] < best[0] ? other : best, [0.15])
+    if (least === 0.15) { return }
+    this.way = ray.way
+    this.choose(this.ways[this.way].indexOf(ray), (piece[0] + piece[1]) / 2)
+  }
+
+  turn(way) {
+    if (!this.ways[way].length) { return }
+    this.way = way
+    const all = runs(this.ways[way][this.index[way]])
+    const isInside = ([, , winding]) => isKept(winding, this.scene.tau)
+    const inside = (!this.scene.asking && all.find(isInside)) || all[0]
+    this.choose(this.index[way], (inside[0] + inside[1]) / 2)
+  }
+
+  choose(index, at) {
+    const rays = this.ways[this.way]
+    const to = clamped(index, 0, rays.length - 1)
+    const from = this.index[this.way]
+    for (let i = Math.min(from, to); i <= Math.max(from, to); i++) { this.scene.lit.add(rays[i]) }
+    this.index[this.way] = to
+    const {pieces} = this.scene.ray = rays[to]
+    this.scene.at = clamped(at, pieces[0][0], pieces.at(-1)[1])
+  }
+
+  press(point) {
+    const across = this.ways[this.way].map(({at}) => Math.abs(at - point[1 - this.way]))
+    this.choose(across.indexOf(Math.min(...across)), point[this.way])
+  }
+
+  key(name) {
+    const move = {
+      ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+    }[name]
+    if (name === "Enter" && this.scene.asking) { this.answer(); return true }
+    if (!move) { return false }
+    const {ray, at} = this.scene
+    const all = runs(ray)
+    const now = all.findIndex(([, high]) => at <= high)
+    const run = all[clamped(now + move[this.way], 0, all.length - 1)]
+    const to = move[this.way] ? (run[0] + run[1]) / 2 : at
+    this.choose(this.index[this.way] + move[1 - this.way], to)
+    return true
+  }
+
+  buttons() {
+    const {scene} = this
+    const light = () => { this.ways[this.way].forEach((ray) => scene.lit.add(ray)) }
+    const all = ["Light all", light]
+    if (scene.asking) { return [["This point", () => this.answer()]] }
+    return [["Turn rays", () => this.turn(1 - this.way)], ...scene.mode === "rays" ? [all] : []]
+  }
+
+  seen() {
+    return this.scene.data.box
+  }
+
+  answer() {
+    const {ray, at} = this.scene
+    this.scene.answer(windingText(sumAt(ray, at)))
+  }
+
+  say() {
+    const {ray, at, tau, mode, asking} = this.scene
+    const [, , winding] = pieceAt(ray, at) ?? [0, 0, 0]
+    const isInside = isKept(winding, tau)
+    if (mode === "winding") {
+      const pieces = this.ways[this.way].flatMap((one) => one.pieces)
+      const count = pieces.filter(([, , number]) => isKept(number, tau)).length
+      return `At the mark the winding number is ${windingText(winding)}, `
+        + (isInside ? `at least τ = ${tau.toFixed(2)}: inside. `
+          : `less than τ = ${tau.toFixed(2)}: outside. `)
+        + `${count} of ${pieces.length} pieces are inside.`
+    }
+    const steps = ray.crossings.map(([, step]) => signed(step)).join(" ")
+    if (asking) { return `Crossings from the left: ${steps || "none"}. The mark is movable.` }
+    const sum = sumAt(ray, at)
+    const differs = Math.abs(sum - winding) > 0.005
+      ? ` Its winding number is ${windingText(winding)}: the surface has holes.` : ""
+    return `Ray ${this.index[this.way] + 1} of ${this.ways[this.way].length}. `
+      + `Crossings: ${steps || "none"}. Sum at the mark: ${windingText(sum)}, `
+      + `${isInside ? "inside" : "outside"}.${differs}`
+  }
+}

@@ -1,0 +1,32 @@
+// The score of an answer: whether it is right, and a sentence about it.
+
+import {lengthText} from "./text.js"
+
+/**
+ * Returns null where nothing is right or wrong, as where a person only tries something.
+ * @param {Answer} answer what the step asks for  @param {any} value what a person answered
+ * @returns {{right: boolean, text: string} | null}
+ */
+export function judge(answer, value) {
+  if (value === "" || value === null || value === undefined) { return null }
+  const {kind, expected, tolerance = 0, unit = ""} = answer
+  if (kind === "number") {
+    const right = Math.abs(value - expected) <= tolerance
+    const measured = `Measured: ${lengthText(expected)}${unit && ` ${unit}`}.`
+    return {right, text: `You said ${lengthText(Number(value))}. ${measured}`}
+  }
+  if (kind === "paint" && typeof value === "number") {
+    const percent = Math.round(100 * value)
+    return {right: value >= expected, text: `Your paint and what follows agree to ${percent}%.`}
+  }
+  if (kind === "paint" || expected === undefined) { return null }
+  const all = [expected].flat()
+  const right = all.includes(value)
+  return {right, text: right ? `Right: ${value}.` : `You chose ${value}, not ${all[0]}.`}
+}
+
+/** How many of the answers are right, and how many have a score. @param {Step[]} steps */
+export function total(steps, answers) {
+  const scores = steps.map(({answer}, i) => judge(answer, answers[i])).filter(Boolean)
+  return {right: scores.filter(({right}) => right).length, of: scores.length}
+}

@@ -1,0 +1,25 @@
+from .address import Address, read_address
+from .choices import RENDERED, Choices, state_of
+from .names import bone_index, clip_named
+from .options import read_choices, read_settings, read_size
+from .order import VIEWS, Picture, order
+from .scene import describe, describe_sweep, textures_for
+
+__all__ = [
+    "RENDERED",
+    "VIEWS",
+    "Address",
+    "Choices",
+    "Picture",
+    "bone_index",
+    "clip_named",
+    "describe",
+    "describe_sweep",
+    "order",
+    "read_address",
+    "read_choices",
+    "read_settings",
+    "read_size",
+    "state_of",
+    "textures_for",
+]

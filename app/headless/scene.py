@@ -1,0 +1,142 @@
+"""The scene that the page shows for some choices."""
+
+from dataclasses import replace
+from typing import Any
+
+from cutcell import bind, build_graph, diagnose
+from cutcell.errors import ParameterError
+from cutcell.pose import pose_at
+from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress, silent
+from cutcell_lab.metrics import motion_error
+from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.description import Description
+from cutcell_viewers.error_scene import gap_between
+from cutcell_viewers.materials import Textures, load_textures
+from cutcell_viewers.pose_scene import clip_in_scene
+
+from ..derive.derived import compute_wanted
+from ..document.state import State
+from ..features.compare import results as compare
+from ..features.distance import results as distance
+from ..features.graph import results as graph
+from ..features.scenes import following, resolve
+from ..features.sweep import sweep_scenes
+from ..features.symmetry import results as symmetry
+from .choices import Choices, state_of
+from .names import clip_named
+
+RESULTS = (*graph.RESULTS, *distance.RESULTS, *symmetry.RESULTS, *compare.RESULTS)
+"""Results that scenes show besides the weights."""
+
+
+def describe(
+    rig: Rig,
+    choices: Choices | None = None,
+    *,
+    binding: Any = None,
+    textures: Textures | None = None,
+    resolution: int | None = None,
+    progress: Progress = silent,
+) -> Description:
+    """Return the scene that the page shows for some choices.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices, optional
+    binding : Binding, optional
+        Of the rig; computed when left out.
+    textures : Textures, optional
+        Its file's materials, where these are chosen; read when left out.
+    resolution : int, optional
+        Of the binding and of the graph that is shown. Default: 64 for weights, and a graph that is
+        easier to read.
+    progress : callable
+        See `cutcell.runtime.progress`.
+
+    Returns
+    -------
+    Description
+        For `cutcell_viewers.show`.
+
+    Raises
+    ------
+    ParameterError
+        No such panel, bone, axis or method; nothing to compare with.
+    SkeletonError
+        A mesh without a skeleton, on a panel that needs one.
+
+    Examples
+    --------
+    >>> scene = describe(rig, Choices("weights", bone="hand.L"))  # doctest: +SKIP
+    >>> cutcell_viewers.show(scene)  # doctest: +SKIP
+    """
+    choices = choices or Choices()
+    state = _computed(rig, choices, binding, textures, resolution, progress)
+    if choices.clip is None or state.bare:
+        return resolve(state)
+    clip = clip_named(rig, choices.clip)
+    if choices.error and state.panel == "pose":
+        gap = gap_between(rig, state.binding.weights, rig.weights, state.blending)  # type: ignore[arg-type]
+        state.motion_error = motion_error(clip_in_scene(rig, clip), gap, progress)
+    time = choices.time or 0.0
+    return replace(following(state), pose=pose_in_scene(rig, pose_at(clip, time)))
+
+
+def describe_sweep(
+    rig: Rig,
+    choices: Choices,
+    rate: int,
+    *,
+    binding: Any = None,
+    resolution: int | None = None,
+    progress: Progress = silent,
+) -> tuple[Description, ...]:
+    """Return the scenes of a film of `choices.sweep`, at a rate of frames per second."""
+    state = _computed(rig, choices, binding, None, resolution, progress)
+    return sweep_scenes(state.snapshot(), choices.sweep or "", rate, progress=progress)
+
+
+def _computed(
+    rig: Rig,
+    choices: Choices,
+    binding: Any,
+    textures: Textures | None,
+    resolution: int | None,
+    progress: Progress,
+) -> State:
+    """Return the page's state with all results that its scene shows."""
+    state = state_of(rig, choices)
+    if resolution is not None and "graph_resolution" not in choices.settings:
+        state.graph_resolution = 0
+    resolution = state.resolution = resolution or choices.method.resolution
+    if state.bare:
+        state.built_graph = build_graph(
+            rig.mesh, resolution, method=choices.method, progress=progress
+        )
+    else:
+        state.binding = binding or bind(rig, resolution, method=choices.method, progress=progress)
+        state.materials = textures or textures_for(rig, choices)
+    if state.panel == "check":
+        state.diagnosis = diagnose(rig, resolution, progress=progress)
+        state.finding = choices.finding or ""
+        if state.finding and state.selected_finding is None:
+            codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
+            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
+    try:
+        state.beside_resolution = resolution
+    except ValueError:
+        if state.panel == "distance" and state.measures:
+            allowed = ", ".join(map(str, state.param.beside_resolution.objects))
+            raise ParameterError(
+                f"measures side by side are drawn at a resolution of {allowed}, not {resolution}"
+            ) from None
+    compute_wanted(state, RESULTS, progress)
+    return state
+
+
+def textures_for(rig: Rig, choices: Choices) -> Textures | None:
+    """Return the materials of a rig's file, if they are chosen; `notes` list what is missing."""
+    chosen = choices.settings.get("pose_colors") == "materials"
+    return load_textures(rig) if chosen and choices.panel == "pose" else None

@@ -1,0 +1,22 @@
+"""A session of the page: its beginning and its end."""
+
+from ..derive.jobs import Schedule
+from ..document.loading import receiver
+from ..document.session import Session
+from ..widgets.view import SceneView
+from .watchers import follow
+
+
+def begin(schedule: Schedule) -> Session:
+    """Return a new session with its view and watchers.
+
+    Parameters
+    ----------
+    schedule : callable
+        Runs a function on the page's own thread; see `Jobs`.
+    """
+    view = SceneView(sizing_mode="stretch_both")
+    session = Session(view, schedule)
+    view.receiver = receiver(session)
+    follow(session)
+    return session

@@ -1,0 +1,114 @@
+"""Functions of the state that are called again whenever what they read of it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Set
+from dataclasses import dataclass
+from functools import partial
+from inspect import getattr_static
+from typing import Any
+
+from panel.io import hold
+
+from ..document.session import Session
+from ..document.state import State
+
+NAMES = frozenset(State.param)
+
+
+class Reader:
+    """A session and its state as one object, which notes the parameters that are read."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.names: set[str] = set()
+
+    @property
+    def state(self) -> Reader:
+        """The state, for functions that take a session."""
+        return self
+
+    def __getattr__(self, name: str) -> Any:
+        state = self.session.state
+        if name in NAMES:
+            self.names.add(name)
+            return getattr(state, name)
+        attribute = getattr_static(type(state), name, None)
+        if isinstance(attribute, property) and attribute.fget is not None:
+            return attribute.fget(self)
+        return getattr(state if hasattr(state, name) else self.session, name)
+
+
+@dataclass(eq=False)
+class Follower:
+    """A function of a `Reader`, what is done with its value, and what it read last.
+
+    Parameters
+    ----------
+    function, act : callable
+    late : set of str
+        Parameters whose changes are followed only after a pause: the view comes first.
+    owner : Follower, optional
+        One that ends this one when it runs again.
+    names : set of str
+    """
+
+    function: Callable[[Any], Any]
+    act: Callable[[Any], Any]
+    late: Set[str] = frozenset()
+    owner: Follower | None = None
+    names: Set[str] = frozenset()
+
+    def is_owned_by(self, other: Follower) -> bool:
+        """Return whether this one ends when another one runs."""
+        return self.owner is not None and (self.owner is other or self.owner.is_owned_by(other))
+
+
+class Followers:
+    """Followers that send all that they change in one message.
+
+    Parameters
+    ----------
+    session : Session
+    panel : str, optional
+        They wait while another panel is shown.
+    """
+
+    def __init__(self, session: Session, panel: str = "") -> None:
+        self.session, self._panel = session, panel
+        self._all: list[Follower] = []
+        self._missed: Set[str] = frozenset()
+        session.state.param.watch(self._changed, list(NAMES))
+
+    def add(self, one: Follower) -> Any:
+        """Add a follower, and return its function's value; it has not acted yet."""
+        self._all.append(one)
+        return self._read(one)
+
+    def end_owned(self, owner: Follower) -> None:
+        """End all followers that one owns."""
+        self._all = [one for one in self._all if not one.is_owned_by(owner)]
+
+    def _read(self, one: Follower) -> Any:
+        reader = Reader(self.session)
+        value = one.function(reader)
+        one.names = reader.names
+        return value
+
+    def _run(self, one: Follower) -> None:
+        if one in self._all:
+            one.act(self._read(one))
+
+    def _changed(self, *events: Any) -> None:
+        # A parameter is triggered where nothing came of a choice: every widget is reset.
+        is_reset = any(event.type == "triggered" for event in events)
+        names = NAMES if is_reset else self._missed | {event.name for event in events}
+        is_seen = self._panel in ("", self.session.state.panel)
+        self._missed = frozenset() if is_seen else names
+        with hold():
+            for one in [*self._all] if is_seen else ():
+                changed = names & one.names
+                if changed and changed <= one.late:
+                    self.session.work.after_a_pause(partial(self._run, one), str(id(one)))
+                elif changed:
+                    self._run(one)
