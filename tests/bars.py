@@ -40,15 +40,8 @@ def bar(nx=20, joints=3):
     return Rig(TriangleMesh(vertices, faces), skeleton)
 
 
-def fork():
-    """Make a handle with two prongs, 0.4 long and 0.01 apart, and a bone in each."""
-    ticks = [
-        np.linspace(0, 1, 11),
-        np.array([0, 0.05, 0.1, 0.11, 0.16, 0.21]),
-        np.array([0, 0.05, 0.1]),
-    ]
-    solid = np.ones([len(t) - 1 for t in ticks], bool)
-    solid[6:, 2, :] = False
+def surface_of(ticks, solid):
+    """Make the surface of the solid cells of a grid; `ticks` are its planes along each axis."""
     filled = np.pad(solid, 1)
     number, faces = {}, []
     for axis, cell in product(range(3), np.argwhere(solid)):
@@ -68,10 +61,22 @@ def fork():
             corners = corners if side else corners[::-1]
             faces += [corners[:3], [corners[0], *corners[2:]]]
     points = np.array([[ticks[axis][key[axis]] for axis in range(3)] for key in number])
+    return TriangleMesh(points, np.array(faces))
+
+
+def fork():
+    """Make a handle with two prongs, 0.4 long and 0.01 apart, and a bone in each."""
+    ticks = [
+        np.linspace(0, 1, 11),
+        np.array([0, 0.05, 0.1, 0.11, 0.16, 0.21]),
+        np.array([0, 0.05, 0.1]),
+    ]
+    solid = np.ones([len(t) - 1 for t in ticks], bool)
+    solid[6:, 2, :] = False
     joints = [[0.1, 0.105, 0.05], [0.55, 0.105, 0.05]]
     joints += [[x, y, 0.05] for y in (0.05, 0.16) for x in (0.65, 0.95)]
     skeleton = Skeleton(joints, [-1, 0, 1, 2, 1, 4], deform=[True, False, True, False, True, False])
-    return Rig(TriangleMesh(points, np.array(faces)), skeleton)
+    return Rig(surface_of(ticks, solid), skeleton)
 
 
 def check_weights(rig, found):

@@ -6,6 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from cutcell.pose import linear_blend_skinning, rotate_joint
+
 PLANE = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
 
 
@@ -22,7 +24,7 @@ def rays(vertices, faces, resolution, axis):
     """All crossings (i, j, position, sign, triangle) along one axis, in exact fractions."""
     u, v = PLANE[axis]
     exact = [[Fraction(float(x)) for x in p] for p in vertices]
-    found = []
+    result = []
     for t, face in enumerate(faces):
         corners = [(exact[k][u], exact[k][v], exact[k][axis]) for k in face]
         a, b, c = corners
@@ -45,8 +47,8 @@ def rays(vertices, faces, resolution, axis):
                 ]
                 position = sum(w * q[2] for w, q in zip(weight, corners, strict=True))
                 sign = sides.pop() * (-1 if axis == 1 else 1)
-                found.append((i, j, float(position), sign, t))
-    return sorted(found)
+                result.append((i, j, float(position), sign, t))
+    return sorted(result)
 
 
 def winding_number(vertices, faces, points):
@@ -74,7 +76,7 @@ def segments(vertices, faces, resolution, tau):
 
     A crossing is named by its ray and its place along it, a lattice point by x, y, z.
     """
-    found = []
+    result = []
     for axis in range(3):
         by_ray = {}
         for i, j, position, sign, _ in rays(vertices, faces, resolution, axis):
@@ -85,15 +87,15 @@ def segments(vertices, faces, resolution, tau):
                 stops = [(p, 0, n, s) for n, (p, s) in enumerate(crossings)]
                 stops += [((k + 0.5) / resolution, 1, k, 0) for k in range(resolution)]
                 stops.sort()  # a crossing comes before a lattice point at the same place
-                found += _segments_of_ray(axis, i, j, stops, resolution)
-    ends, middles, crossed = zip(*found, strict=True)
+                result += _segments_of_ray(axis, i, j, stops, resolution)
+    ends, middles, crossed = zip(*result, strict=True)
     inside = winding_number(vertices, faces, np.array(middles)) - crossed
     return {pair for pair, number in zip(ends, inside, strict=True) if number >= tau}
 
 
 def _segments_of_ray(axis, i, j, stops, resolution):
     """List (ends, place to take the winding number at, what to count off it)."""
-    found = []
+    result = []
     u, v = PLANE[axis]
     for n, (a, b) in enumerate(pairwise(stops)):
         middle, crossed = np.empty(3), 0
@@ -103,8 +105,8 @@ def _segments_of_ray(axis, i, j, stops, resolution):
             # No length: take the number just before this place, and count from there.
             middle[axis] -= 1e-9
             crossed = sum(s for p, _, _, s in stops[: n + 1] if p == a[0])
-        found.append(((_name(axis, i, j, a), _name(axis, i, j, b)), middle, crossed))
-    return found
+        result.append(((_name(axis, i, j, a), _name(axis, i, j, b)), middle, crossed))
+    return result
 
 
 def _name(axis, i, j, stop):
@@ -146,3 +148,27 @@ def paper_weights(distance, diagonal, alpha):
         d = distance[j, i] / diagonal
         weights[i, j] = (1 / ((1 - alpha) * d + alpha * d**2)) ** 2 if np.isfinite(d) else 0
     return weights / weights.sum(axis=1, keepdims=True)
+
+
+def stretch(points, edges, weights, skeleton, degrees=30.0, factor=2.0):
+    """Part of the edges' length that some joint's turn stretches or shrinks, and by which joint.
+
+    Returns the part, and for each joint the length that its own turns stretch.
+    """
+    total, stretched, by_joint = 0.0, 0.0, np.zeros(len(skeleton.joints))
+    posed = [
+        [linear_blend_skinning(points, weights, rotate_joint(skeleton, j, axis, degrees))
+         for axis in "xyz"]
+        for j in range(len(skeleton.joints))
+    ]  # fmt: skip
+    for a, b in edges:
+        length = np.linalg.norm(points[a] - points[b])
+        total += length
+        is_stretched = False
+        for j, poses in enumerate(posed):
+            lengths = [np.linalg.norm(pose[a] - pose[b]) for pose in poses]
+            if any(one > factor * length or one * factor < length for one in lengths):
+                by_joint[j] += length
+                is_stretched = True
+        stretched += length * is_stretched
+    return stretched / total, by_joint

@@ -83,10 +83,10 @@ def written(tmp_path_factory):
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_an_output_is_written_whole_or_not_at_all(written, name):
-    folder, told = written
+    folder, reports = written
     assert (folder / f"good-{name}").stat().st_size > 700
-    assert told[name].startswith(f"{name}: cannot be written (")
-    assert told[name].endswith("File too large)")
+    assert reports[name].startswith(f"{name}: cannot be written (")
+    assert reports[name].endswith("File too large)")
     assert (folder / name).read_text() == "old"
 
 

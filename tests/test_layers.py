@@ -43,7 +43,7 @@ TORCH = [
 # Each package of the core uses only those before it.
 ORDER = (
     "errors", "runtime", "geometry", "rig", "method", "isolated", "io", "graph", "geodesics",
-    "weights", "binding", "editing", "pose", "templates", "diagnosis", "cli", "__main__",
+    "pose", "weights", "binding", "editing", "templates", "diagnosis", "cli", "__main__",
 )  # fmt: skip
 MAX_ROOT_ENTRIES = 24
 MAX_FILES = 15

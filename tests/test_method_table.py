@@ -28,11 +28,11 @@ def rows() -> list[tuple[str, str, str, list[str]]]:
     cells = [
         re.split(r"\s*\|\s*", line.strip("| ")) for line in re.findall(r"^\|.*\|$", table, re.M)
     ]
-    found = []
+    result = []
     for what, *code in cells[2:]:  # after the heading and the line below it
         file, function, *callers = (re.findall(r"`([^`]+)`", cell) for cell in code)
-        found.append((what, file[0], function[0], callers[0] if callers else []))
-    return found
+        result.append((what, file[0], function[0], callers[0] if callers else []))
+    return result
 
 
 def imported(file: str, function: str):
@@ -42,9 +42,9 @@ def imported(file: str, function: str):
 
 def public(name: str):
     for module in PUBLIC:
-        found = getattr(importlib.import_module(module), name, None)
-        if found is not None:
-            return found
+        result = getattr(importlib.import_module(module), name, None)
+        if result is not None:
+            return result
     pytest.fail(f"{name} is not public")
 
 

@@ -81,8 +81,8 @@ def test_every_row_has_a_result_and_a_verdict():
 
 
 def test_every_label_of_the_paper_has_a_row():
-    found = {label for row in rows() for label in quoted(row[0])}
-    assert found == set(LABELS)
+    result = {label for row in rows() for label in quoted(row[0])}
+    assert result == set(LABELS)
     if TEX.exists():
         declared = set(re.findall(r"\\label\{((?:alg|equ|fig|tab):[^}]+)\}", TEX.read_text()))
         assert declared == set(LABELS)

@@ -37,7 +37,7 @@ def test_the_commands_run(tmp_path, monkeypatch):
     shutil.copy(demo_path("biped"), tmp_path / "character.glb")
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^cutcell (.*)$", README, re.MULTILINE)
-    assert len(commands) == 11
+    assert len(commands) == 13
     for command in commands:
         if command.startswith("app "):  # it serves until it is stopped; tests/app opens it
             continue

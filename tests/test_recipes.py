@@ -9,27 +9,31 @@ from pathlib import Path
 
 import pytest
 
-from cutcell_app.panels import BUILDERS
-from cutcell_app.scenes import SCENES
-from cutcell_app.state import PANELS
+from cutcell_app.document.state import PANELS
+from cutcell_app.features.builders import BUILDERS
+from cutcell_app.features.scenes import SCENES
 from tests.test_layers import ROOT
 
 PANEL = """
-from cutcell_app.layout.session import begin
-from cutcell_app.panels import BUILDERS
-from cutcell_app.scenes import resolve
+from cutcell_app.shell.begin import begin
+from cutcell_app.features.builders import BUILDERS
+from cutcell_app.features.scenes import resolve
 from tests.viewers.arm import arm_rig
-session = begin(lambda act: act())
+from tests.app.loop import Loop
+loop = Loop()
+session = begin(loop)
 session.state.param.update(panel="size", rig=arm_rig())
 assert BUILDERS["size"](session).objects[1].value is True
+loop.run_until(lambda: session.state.size is not None)
+assert session.state.size > 0
 assert "body" in resolve(session.state).actors
 """
 OPTION = """
 import cutcell
 from cutcell.cli.options import METHOD_OPTIONS
-from cutcell_app.layout.session import begin
-from cutcell_app.panels import BUILDERS
-from cutcell_app.state.method import GRAPH
+from cutcell_app.shell.begin import begin
+from cutcell_app.features.builders import BUILDERS
+from cutcell_app.document.method import GRAPH
 session = begin(lambda act: act())
 BUILDERS["graph"](session)
 assert cutcell.Method(strict=True).strict and "strict" in METHOD_OPTIONS and "strict" in GRAPH
@@ -56,13 +60,14 @@ def follow(lines: list[str], path: Path) -> None:
         else:
             at = content.index(line[1:], at)
         at += 1
+    path.parent.mkdir(exist_ok=True)
     path.write_text("\n".join(content) + "\n", encoding="utf-8")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("recipe", "most", "check"),
-    [("Adding a panel", 5, PANEL), ("Adding an option of the method", 4, OPTION)],
+    [("Adding a panel", 6, PANEL), ("Adding an option of the method", 4, OPTION)],
     ids=["panel", "option"],
 )
 def test_a_recipe_is_enough(recipe, most, check, tmp_path):

@@ -121,13 +121,13 @@ def page(installed, folder) -> Iterator[str]:
         preexec_fn=reset_signals,
     ) as process:
         try:
-            told = []
+            reports = []
             for line in process.stdout or ():
-                told.append(line)
-                if found := re.search(r"http://\S+", line):
-                    yield found[0].rstrip("/.")
+                reports.append(line)
+                if result := re.search(r"http://\S+", line):
+                    yield result[0].rstrip("/.")
                     return
-            pytest.fail("".join(told))
+            pytest.fail("".join(reports))
         finally:
             process.terminate()
 

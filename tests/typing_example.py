@@ -25,6 +25,7 @@ def whole_way(path: Path) -> NDArray[np.float64]:
     assert_type(rig, cutcell.Rig)
     binding = cutcell.bind(rig, 128, method="paper", alpha=0.3, connectivity="any")
     assert_type(binding, cutcell.Binding)
+    assert_type(binding.stretch, cutcell.Stretch)
     cutcell.save(path, rig.with_weights(binding.weights))
     assert_type(cutcell.show(rig, binding), cutcell.Page)
     error = cutcell_lab.metrics.weight_l1(binding.weights, binding.weights)
@@ -62,9 +63,9 @@ def of_a_bare_mesh(mesh: cutcell.TriangleMesh) -> cutcell.Rig:
     skeleton = cutcell.fit_skeleton(mesh, "biped")
     assert_type(skeleton, cutcell.Skeleton)
     assert_type(cutcell.templates.TEMPLATES, tuple[cutcell.templates.Template, ...])
-    hat = cutcell.JointCorrection(added=True, position=(0, 2, 0), parent="head")
-    corrections = cutcell.Corrections(joints={"hat": hat}, removed=["toe.L"])
-    return cutcell.corrected_rig(cutcell.Rig(mesh, skeleton), corrections)
+    hat = cutcell.JointEdit(added=True, position=(0, 2, 0), parent="head")
+    edits = cutcell.Edits(joints={"hat": hat}, removed=["toe.L"])
+    return cutcell.edited_rig(cutcell.Rig(mesh, skeleton), edits)
 
 
 def look(rig: cutcell.Rig) -> list[str]:
@@ -86,34 +87,52 @@ def look(rig: cutcell.Rig) -> list[str]:
 
 
 def why(rig: cutcell.Rig) -> dict[str, float]:
-    found = cutcell.explain(rig, 7, method="paper", connectivity="any")
-    assert_type(found, cutcell.Explanation)
-    shares: tuple[cutcell.JointShare, ...] = found.joints
+    result = cutcell.explain(rig, 7, method="paper", connectivity="any")
+    assert_type(result, cutcell.Explanation)
+    shares: tuple[cutcell.JointShare, ...] = result.joints
     return {share.name: share.steps["normalise"] for share in shares}
 
 
 def put_right(rig: cutcell.Rig) -> cutcell.Binding:
-    corrections = cutcell.Corrections(
-        joints={"Root": cutcell.JointCorrection(deform=False, position=(0.0, 1.0, 0.0))},
-        parts={7: cutcell.PartCorrection("glued", "Head")},
-        vertices={3: {"Head": 0.5, "Neck": 0.5}},
+    edits = cutcell.Edits(
+        joints={"Root": cutcell.JointEdit(deform=False, position=(0.0, 1.0, 0.0))},
+        base="file",
+        layers=[
+            cutcell.Layer(cutcell.Filled({"Head": 1.0}), cutcell.Mask(part=7)),
+            cutcell.Layer(cutcell.Painted([3], ["Head", "Neck"], [[0.5, 0.5]]), opacity=0.5),
+            cutcell.Layer(cutcell.Computed({"resolution": 96}), cutcell.Mask(vertices=[1, 2])),
+            cutcell.Layer(cutcell.FromFile()),
+            cutcell.Layer(cutcell.Attached(), cutcell.Mask(part=7)),
+            cutcell.Layer(cutcell.Smoothed(2, through=True)),
+            cutcell.Layer(cutcell.Mirrored("left")),
+            cutcell.Layer(cutcell.Locked(["Head"])),
+        ],
     )
-    again = cutcell.editing.corrections.Corrections.from_json(corrections.to_json())
-    assert_type(cutcell.corrected_rig(rig, again), cutcell.Rig)
-    return cutcell.bind(rig, corrections=again)
+    again = cutcell.editing.edits.Edits.from_json(edits.to_json())
+    assert_type(cutcell.edited_rig(rig, again), cutcell.Rig)
+    return cutcell.bind(rig, edits=again)
 
 
 def move(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     turns = np.tile(cutcell.pose.axis_rotation("x", 30.0), (len(rig.skeleton.joints), 1, 1))
     transforms = cutcell.forward_kinematics(rig.skeleton, turns)
-    return cutcell.linear_blend_skinning(rig.mesh.vertices, weights, transforms)
+    bent = cutcell.dual_quaternion_skinning(rig.mesh.vertices, weights, transforms)
+    return bent - cutcell.linear_blend_skinning(rig.mesh.vertices, weights, transforms)
 
 
 def compared(rig: cutcell.Rig) -> str:
-    found = cutcell_lab.baselines.METHODS["bone_heat"](rig)
-    assert_type(found, cutcell_lab.baselines.BaselineBinding)
+    result = cutcell_lab.baselines.METHODS["bone_heat"](rig)
+    assert_type(result, cutcell_lab.baselines.BaselineBinding)
+    swept = cutcell_lab.sweep(rig, "alpha", [0.2, 0.8], method="paper", resolution=32)
+    assert_type(swept, cutcell_lab.Sweep)
+    assert_type(swept.points[0], cutcell_lab.SweepPoint)
     comparison = cutcell_lab.compare([rig], ["cutcell_rig", "euclidean"])
     return comparison_markdown(comparison)
+
+
+def evaluated(folder: Path) -> float | None:
+    evaluation = cutcell_lab.evaluate(folder / "predicted", folder / "reference")
+    return evaluation.statistic("rignet", "precision")["median"]
 
 
 def careful(path: Path) -> str:

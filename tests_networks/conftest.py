@@ -19,12 +19,12 @@ def pytest_sessionstart() -> None:
 
 def characters(*names: str, prior: bool = True) -> list[Sample]:
     """Return samples of demo characters, with the weights of `bind` as prior or without."""
-    found = []
+    result = []
     for k, name in enumerate(names):
         rig = cutcell.load(ROOT / "assets" / f"{name}.glb")
         sample = sample_rig(rig, POINTS + 10 * k)
-        found.append(sample.with_prior(cutcell.bind(rig, 32).weights) if prior else sample)
-    return found
+        result.append(sample.with_prior(cutcell.bind(rig, 32).weights) if prior else sample)
+    return result
 
 
 @pytest.fixture(scope="session")

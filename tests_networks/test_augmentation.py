@@ -72,9 +72,9 @@ def test_neighbours_are_those_of_before_that_are_left(biped, seed):
     for k, vertex in enumerate(sample.vertices):
         before = biped.vertices[biped.neighbours[place[vertex]]]
         wanted = [v for v in before if v in sample.vertices and v != vertex]
-        found = sample.vertices[sample.neighbours[k]]
-        np.testing.assert_array_equal(found[: len(wanted)], wanted)
-        assert (found[len(wanted) :] == vertex).all()
+        result = sample.vertices[sample.neighbours[k]]
+        np.testing.assert_array_equal(result[: len(wanted)], wanted)
+        assert (result[len(wanted) :] == vertex).all()
 
 
 def test_the_same_seed_gives_the_same_sample(biped):
@@ -84,11 +84,11 @@ def test_the_same_seed_gives_the_same_sample(biped):
 
 
 def test_each_change_happens_and_none_always(biped):
-    found = [drawn(biped, 96, np.random.default_rng(seed), augment=True) for seed in SEEDS]
-    lost = np.array([len(sample.points) < len(biped.points) for sample in found])
-    sparse = np.array([len(sample.joints) < len(biped.joints) for sample in found])
+    result = [drawn(biped, 96, np.random.default_rng(seed), augment=True) for seed in SEEDS]
+    lost = np.array([len(sample.points) < len(biped.points) for sample in result])
+    sparse = np.array([len(sample.joints) < len(biped.joints) for sample in result])
     for what in (lost, sparse):
-        assert 0 < what.sum() < len(found)
+        assert 0 < what.sum() < len(result)
 
 
 def test_without_augmentation_nothing_but_heading_size_and_points_changes(biped):

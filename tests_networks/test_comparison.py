@@ -26,8 +26,8 @@ def test_all_points_of_a_rig_measure_as_the_rig_does():
         *precision_recall(weights, rig.weights, shares=shares),
         deformation_error(rig, weights, rig.weights).mean,
     ]
-    found = scores(sample, sample.of_rig(weights).astype(float))[:4]
-    np.testing.assert_allclose(found, wanted, rtol=2e-3)
+    result = scores(sample, sample.of_rig(weights).astype(float))[:4]
+    np.testing.assert_allclose(result, wanted, rtol=2e-3)
 
 
 def test_small_weights_are_dropped_unless_they_are_next_to_nothing():
@@ -42,8 +42,8 @@ def test_characters_are_parted_by_maker():
         "other makers": ["khronos_Fox"],
         "same maker": ["quaternius_wolf", "quat_wasp"],
     }
-    found = {"khronos_Fox": [1.0, np.nan, 3.0, 4.0], "other": [3.0, 0.5, 3.0, 4.0]}
-    np.testing.assert_allclose(means(found, ["khronos_Fox", "other"]), [2, 0.5, 3, 4])
+    result = {"khronos_Fox": [1.0, np.nan, 3.0, 4.0], "other": [3.0, 0.5, 3.0, 4.0]}
+    np.testing.assert_allclose(means(result, ["khronos_Fox", "other"]), [2, 0.5, 3, 4])
 
 
 def test_it_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):

@@ -62,9 +62,9 @@ def test_networks_are_found_and_named(runs, methods):
 
 def test_networks_of_one_name_are_told_apart_by_their_folders(runs, tmp_path, two):
     train(replace(RECIPE, points=16), two, 1, tmp_path / "third")
-    found = trained_networks([runs / "first", tmp_path])
-    assert list(found) == ["unirig-bind-tiny-0-1", "unirig-bind-tiny-0-2"]
-    assert [one.title[-8:] for one in found.values()] == [" (first)", " (third)"]
+    result = trained_networks([runs / "first", tmp_path])
+    assert list(result) == ["unirig-bind-tiny-0-1", "unirig-bind-tiny-0-2"]
+    assert [one.title[-8:] for one in result.values()] == [" (first)", " (third)"]
 
 
 def test_the_weights_of_a_whole_rig_are_what_the_network_predicts(runs, methods, rig):
@@ -88,14 +88,14 @@ def test_what_no_face_uses_follows_what_is_nearest(methods, rig):
     mesh = rig.mesh
     vertices = np.vstack([mesh.vertices, mesh.vertices[:1] + 1e-3])
     loose = replace(rig, mesh=cutcell.TriangleMesh(vertices, mesh.faces), weights=None)
-    found = methods["puppeteer-none-tiny-0"](loose)
-    assert found.warnings == ()
-    np.testing.assert_array_equal(found.weights[-1], found.weights[0])
+    result = methods["puppeteer-none-tiny-0"](loose)
+    assert result.warnings == ()
+    np.testing.assert_array_equal(result.weights[-1], result.weights[0])
 
 
 def test_influences_are_limited(methods, rig):
-    found = methods["puppeteer-none-tiny-0"](rig, max_influences=1)
-    assert ((found.weights > 0).sum(axis=1) == 1).all()
+    result = methods["puppeteer-none-tiny-0"](rig, max_influences=1)
+    assert ((result.weights > 0).sum(axis=1) == 1).all()
 
 
 class Harm:
@@ -121,9 +121,9 @@ def test_what_cannot_be_used_is_told_and_left_out(runs, tmp_path, monkeypatch):
     for k, (changes, _) in enumerate(SPOILED):
         shutil.copytree(runs / "first", tmp_path / f"spoiled {k}")
         change(tmp_path / f"spoiled {k}", **changes)
-    told: list[str] = []
-    assert len(trained_networks([runs, tmp_path], told.append)) == 2
-    for k, (sentence, (_, problem)) in enumerate(zip(told, SPOILED, strict=True)):
+    reports: list[str] = []
+    assert len(trained_networks([runs, tmp_path], reports.append)) == 2
+    for k, (sentence, (_, problem)) in enumerate(zip(reports, SPOILED, strict=True)):
         assert f"spoiled {k}" in sentence
         assert problem in sentence
     assert not (tmp_path / "harm").exists()
@@ -148,9 +148,9 @@ def test_parameters_of_another_version_are_told_when_it_is_asked(rig, runs, tmp_
     change(tmp_path, network={"weigh": torch.zeros(3)})
     assert "another version" in method(rig).failed
     (tmp_path / "network.pt").unlink()
-    found = method(rig)
-    assert found.weights is None
-    assert "cannot be read" in found.failed
+    result = method(rig)
+    assert result.weights is None
+    assert "cannot be read" in result.failed
 
 
 def test_a_prior_that_cannot_be_computed_is_told(methods, rig, monkeypatch):

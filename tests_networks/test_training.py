@@ -76,8 +76,8 @@ def test_the_same_recipe_gives_the_same_network(head, augment, two):
 def test_a_kept_network_predicts_the_same(two, tmp_path):
     recipe = Recipe("unirig", points=32, prior="bind")
     network = train(recipe, two, 1, tmp_path)
-    loaded, found = load_network(tmp_path)
-    assert found == recipe
+    loaded, result = load_network(tmp_path)
+    assert result == recipe
     np.testing.assert_array_equal(predict(network, two[:1])[0], predict(loaded, two[:1])[0])
 
 
@@ -165,9 +165,9 @@ def test_rigs_without_weights_are_left_out_and_said(tmp_path):
     (tmp_path / "rigs").mkdir()
     (tmp_path / "rigs" / "bare.glb").write_bytes((ASSETS / "biped.glb").read_bytes())
     (tmp_path / "rigs" / "cube.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    told: list[str] = []
-    found = Samples([tmp_path / "rigs"], prior="none", points=32, cache=tmp_path / "c").load(
-        told.append
+    reports: list[str] = []
+    result = Samples([tmp_path / "rigs"], prior="none", points=32, cache=tmp_path / "c").load(
+        reports.append
     )
-    assert len(found) == 1
-    assert all("left out" in text for text in told)
+    assert len(result) == 1
+    assert all("left out" in text for text in reports)

@@ -9,7 +9,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+import weakref
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -28,23 +29,42 @@ LOAD_MS = 120_000
 BIND_MS = 240_000
 expect.set_options(timeout=LOAD_MS)  # a loaded machine is slow, and patience costs nothing
 ANSWER_MS = 10_000
-OPENINGS = 5
 
-# What was clicked is in the server's hands before it is asked; twice, since what it then does may
-# let a person's choice begin the next thing. The widgets show what arrived a frame later.
+# The server has finished all that the page has sent, what it answered is drawn, and that made the
+# page send nothing more. A page that is loaded anew meanwhile never hears the answer.
 SETTLED = """async (limit) => {
-  const within = (promise) => Promise.race([promise, new Promise((no) => setTimeout(no, limit))])
   const view = window.__cutcell
-  let before = null
-  for (let calm = 0; calm < 2; calm++) {
-    if (!await within(view.serverRests()) || !view.messages) return false
-    await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)))
-    const now = JSON.stringify(view.report())
-    if (before !== null && now !== before || !view.report().idle) return false
-    before = now
-  }
-  return true
+  const idle = view.serverIdle()
+  const {sent} = window
+  if (!await Promise.race([idle, new Promise((no) => setTimeout(no, limit))])) return false
+  const {messages} = view
+  // Widgets that came are built in pieces, between which the page has more to do.
+  await new Promise(requestAnimationFrame)
+  await new Promise((rests) => requestIdleCallback(rests, {timeout: limit}))
+  return messages > 0 && view.report().idle && sent === window.sent && messages === view.messages
 }"""
+
+# Counts what the page sends. No measured speed decides how finely the page draws.
+STEADY = """
+  const {send} = WebSocket.prototype
+  Object.assign(window, {sent: 0, sockets: []})
+  WebSocket.prototype.send = function (...parts) {
+    if (!sockets.includes(this)) { sockets.push(this) }
+    window.sent += 1
+    send.apply(this, parts)
+  }
+  let view
+  Object.defineProperty(Window.prototype, "__cutcell", {
+    get: () => view?.gone ? undefined : view,  // the page deletes it when it ends
+    set: (made) => {
+      view = made
+      Object.assign(view.renderer.smooth, {cost: {rough: 0, full: 0}, time: () => {}})
+    },
+  })
+"""
+
+SCALE = 0.5
+"""Size of a picture in parts of the page's: to draw a quarter of the pixels takes less time."""
 
 # One sample a pixel, not four: smooth edges take software rendering longer than all the rest.
 ONE_SAMPLE = """
@@ -71,6 +91,30 @@ IN_SIGHT = """(code) => {
   }
 }"""
 
+# What is printed of a page where a test failed.
+STATE = {
+    "address": "location.search",
+    "view": "JSON.stringify(window.__cutcell?.report())",
+    "focus": """() => {
+      let part = document.activeElement
+      while (part?.shadowRoot?.activeElement) { part = part.shadowRoot.activeElement }
+      return part?.outerHTML.slice(0, 300)
+    }""",
+    "texts": """() => {
+      const seen = (node) => {
+        if (node.nodeType === Node.TEXT_NODE) { return [node.data.trim()] }
+        if (node instanceof Element) {
+          const {display, visibility} = getComputedStyle(node)
+          const isHidden = display === "none" || visibility === "hidden"
+          if (isHidden || node.matches("style, script")) { return [] }
+        }
+        const children = node.shadowRoot?.childNodes ?? node.childNodes
+        return [...children].flatMap(seen)
+      }
+      return seen(document.body).filter(Boolean).join(" | ")
+    }""",
+}
+
 AT_FIRST_SIGHT = """(buttons, limit) => new Promise((seen, missed) => {
   const end = performance.now() + limit
   const look = () => {
@@ -87,11 +131,6 @@ AT_FIRST_SIGHT = """(buttons, limit) => new Promise((seen, missed) => {
 })"""
 
 
-SAME_RIG = """query => {
-  const [now, then] = [location.search, query].map((said) => new URLSearchParams(said).get("rig"))
-  return now === then
-}"""
-
 GO = """query => {
   history.pushState(history.state, "", location.pathname + query)
   dispatchEvent(new PopStateEvent("popstate"))
@@ -102,9 +141,18 @@ OF_THE_BROWSER = re.compile(r"GL Driver Message|GroupMarkerNotSet|software WebGL
 
 
 @contextmanager
-def served(*arguments: str) -> Iterator[str]:
-    """Run `cutcell app` as a process of its own; give its address."""
-    command = [sys.executable, "-m", "cutcell", "app", *arguments, "--no-show", "--port", "0"]
+def served(*arguments: str, program: Sequence[str] = ("cutcell",)) -> Iterator[str]:
+    """Run `cutcell app` as a process of its own; give its address.
+
+    Parameters
+    ----------
+    *arguments : str
+        Of the command.
+    program : sequence of str
+        A module that runs the command, and arguments before those.
+    """
+    options = ["app", *arguments, "--no-show", "--port", "0"]
+    command = [sys.executable, "-m", *program, *options]
     process = subprocess.Popen(
         command,
         cwd=ROOT,
@@ -129,9 +177,9 @@ def served(*arguments: str) -> Iterator[str]:
     reader.start()
     try:
         known.wait(START_SECONDS)
-        found = re.search(r"http://\S+", "".join(lines))
-        assert found, "the server did not start:\n" + "".join(lines)
-        yield found.group()
+        result = re.search(r"http://\S+", "".join(lines))
+        assert result, "the server did not start:\n" + "".join(lines)
+        yield result.group()
     finally:
         code = process.poll()
         process.terminate()
@@ -140,22 +188,27 @@ def served(*arguments: str) -> Iterator[str]:
         assert process.stdout is not None
         process.stdout.close()
     assert code is None, f"the server ended by itself ({code}):\n" + "".join(lines)
-    told = "".join(lines)
+    reports = "".join(lines)
     # A browser that leaves in mid-sentence makes the server's libraries grumble; we must not.
-    assert "unexpected error" not in told, told
-    assert str(ROOT / "app") not in told, told
+    assert "unexpected error" not in reports, reports
+    assert str(ROOT / "app") not in reports, reports
+
+
+visits: weakref.WeakSet[Visit] = weakref.WeakSet()
+"""Pages that are open, for the report of a test that fails."""
 
 
 class Visit:
-    """One person's page, with smooth edges or without."""
+    """One person's page, as a person sees it or, `smooth` is false, with fewer pixels to draw."""
 
     def __init__(self, browser: Browser, url: str, smooth: bool = False, **context: Any) -> None:
+        size = {"width": 1100, "height": 720}
+        scale = 1 if smooth else SCALE
         self.context = browser.new_context(
-            **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
+            **{"viewport": size, "accept_downloads": True, "device_scale_factor": scale, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
-        if not smooth:
-            self.context.add_init_script(ONE_SAMPLE)
+        self.context.add_init_script(STEADY if smooth else STEADY + ONE_SAMPLE)
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
@@ -164,6 +217,7 @@ class Visit:
         self.page.on("console", self._hear)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.url = url
+        visits.add(self)
         self.page.goto(url)
 
     def _hear(self, message: ConsoleMessage) -> None:
@@ -173,7 +227,18 @@ class Visit:
     def close(self) -> None:
         """Leave; check what was heard until then."""
         self.context.close()
+        visits.discard(self)
         self.check()
+
+    def described(self) -> str:
+        """Return what the page shows and says, to find the cause of a failure."""
+        parts = [f"complaints: {self.complaints}"]
+        for name, code in STATE.items():
+            try:
+                parts.append(f"{name}: {self.page.evaluate(code)}")
+            except Error as error:
+                parts.append(f"{name}: {error}")
+        return "\n".join(parts)
 
     def check(self) -> None:
         """Check that nothing was complained of and no request left the machine; forget it."""
@@ -186,46 +251,35 @@ class Visit:
 
     @property
     def beginning(self) -> tuple[str, str]:
-        """What the address says, and what the line at the bottom counts."""
-        counts = self.status.inner_text().rpartition("|")[0]
-        return self.page.evaluate("location.search"), counts
+        """The address, and what the line at the bottom counts."""
+        return self.address, self.status.inner_text().rpartition("|")[0]
 
     def remember_beginning(self) -> None:
         """Note what `begin_anew` goes back to."""
         self.first = self.beginning
-        self.first_bone = self.bone.inner_text()
 
     def begin_anew(self) -> bool:
         """Go back to how the page began; return whether it is as it was."""
         try:
-            for _ in range(2):  # a card, and what it stands on
+            for _ in range(2):  # a card, and what is under it
                 self.page.keyboard.press("Escape")
             self.page.mouse.move(2, 2)
-            if self.page.evaluate(SAME_RIG, self.first[0]):
-                self.button("Reset all choices").click(timeout=ANSWER_MS)
-                self.panel("Weights")
-                if self.bone.inner_text() != self.first_bone:
-                    self.choose("Bone", self.first_bone)
-                    self.settle()
+            self.settle()
             if self.beginning != self.first:
                 self.go(self.first[0])
             if self.button("Close").is_visible():
                 self.dismiss()
+            self.unfold()
             return self.beginning == self.first
         except (Error, AssertionError):
             return False
 
     @property
     def address(self) -> str:
-        """The part of the page's address that names what it shows."""
+        """The part of the page's address that names what it shows, once it is written."""
+        self.settle()
+        self.page.wait_for_function("window.__cutcell.addressBar.waiting === null")
         return self.page.evaluate("location.search")
-
-    def go_back_to(self, query: str) -> None:
-        """Go to an address of this page, unless it is there."""
-        if self.address != query:
-            self.go(query)
-            if self.button("Close").is_visible():
-                self.dismiss()
 
     def go(self, query: str) -> None:
         """Go to another address of this page, as by the browser's Back: nothing is loaded anew."""
@@ -297,14 +351,18 @@ class Visit:
         headings = self.page.locator(".MuiAccordionSummary-root[aria-expanded=false]:visible")
         # By script: on a narrow page a heading may be below the edge of the sheet.
         # A section that is shown later, or is drawn again as it is clicked, is folded once more.
-        for _ in range(OPENINGS):
+        while headings.count():
             headings.evaluate_all("all => all.forEach((heading) => heading.click())")
-            try:
-                expect(headings).to_have_count(0, timeout=ANSWER_MS)
-            except AssertionError:
-                continue
-            return
-        expect(headings).to_have_count(0)
+            self.settle()
+
+    def reach(self, control: Locator) -> Locator:
+        """Open sections until a control is seen: one that is drawn again late is folded."""
+        end = time.monotonic() + LOAD_MS / 1000
+        while not control.is_visible():
+            assert time.monotonic() < end, f"no section shows {control}"
+            self.unfold()
+            self.settle()
+        return control
 
     def switch(self, name: str) -> None:
         """Turn a switch over."""
@@ -356,11 +414,11 @@ class Visit:
             What must be true of `vertex`, in JavaScript.
         """
         self.settle()
-        found = self.page.evaluate(IN_SIGHT, code)
-        assert found, "no such vertex is in sight"
-        self.page.mouse.click(found[1], found[2])
-        expect(self.card).to_have_attribute("aria-label", f"Vertex {found[0]}")
-        return int(found[0])
+        result = self.page.evaluate(IN_SIGHT, code)
+        assert result, "no such vertex is in sight"
+        self.page.mouse.click(result[1], result[2])
+        expect(self.card).to_have_attribute("aria-label", f"Vertex {result[0]}")
+        return int(result[0])
 
     def close_card(self) -> None:
         """Leave the clicked vertex."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 from tornado.ioloop import IOLoop
 
 from cutcell_app.serve import begin, free_port
+from tests.app.loop import wait_until
 
 
 class Serving:
@@ -37,17 +37,19 @@ class Serving:
 
 
 @contextmanager
-def serving(path: Path | None = None, address: str = "localhost") -> Iterator[Serving]:
+def serving(
+    path: Path | None = None, address: str = "localhost", frames: Collection[str] = ()
+) -> Iterator[Serving]:
     """Serve the page while the block runs; sessions that were left end within a second."""
     port = free_port(0, address)
-    ready, found = threading.Event(), []
+    ready, result = threading.Event(), []
     quick = {"check_unused_sessions_milliseconds": 100, "unused_session_lifetime_milliseconds": 200}
 
     def run() -> None:
         asyncio.set_event_loop(asyncio.new_event_loop())
-        server = begin(path, port, address, **quick)
+        server = begin(path, port, address, frames=frames, **quick)
         server.start()
-        found.append(server)
+        result.append(server)
         IOLoop.current().add_callback(ready.set)
         IOLoop.current().start()
         server.stop()
@@ -58,16 +60,10 @@ def serving(path: Path | None = None, address: str = "localhost") -> Iterator[Se
     thread.start()
     assert ready.wait(60)
     try:
-        yield Serving(port, found[0])
+        yield Serving(port, result[0])
     finally:
         # What visitors began must not take its turn from the tests that follow.
-        _wait_until(lambda: not found[0].get_sessions("/"))
-        _wait_until(lambda: all(t.name != "cutcell job" for t in threading.enumerate()))
-        found[0].io_loop.add_callback(found[0].io_loop.stop)
+        wait_until(lambda: not result[0].get_sessions("/"))
+        wait_until(lambda: all(t.name != "cutcell job" for t in threading.enumerate()))
+        result[0].io_loop.add_callback(result[0].io_loop.stop)
         thread.join(30)
-
-
-def _wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.05)

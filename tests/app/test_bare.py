@@ -4,45 +4,28 @@ import numpy as np
 import pytest
 
 from cutcell.errors import SkeletonError
-from cutcell.rig import Rig, Skeleton
-from cutcell_app.commands import keys, loading, look
-from cutcell_app.layout.sidebar import NO_SKELETON, panels
-from cutcell_app.layout.status import messages, summary
-from cutcell_app.panels.bone import bone
-from cutcell_app.panels.export import export
-from cutcell_app.render import Choices, describe
-from cutcell_app.scenes import resolve
-from cutcell_app.state import PANELS
-from cutcell_app.state.url import to_query
-from tests.viewers.arm import arm_rig
-
-
-def bare_arm():
-    rig = arm_rig()
-    return Rig(rig.mesh, Skeleton([], []), name="statue", warnings=("it has no skin",))
-
-
-@pytest.fixture
-def bare(session, loop):
-    """Return a session on which a bare mesh stands."""
-    session.state.resolution = 16
-    show_bare(session, loop)
-    return session
-
-
-def show_bare(session, loop):
-    loading.show_rig(session, bare_arm())
-    loop.run_until(lambda: session.state.bare_graph is not None)
-    loop.run_until(lambda: not session.tasks.running)
+from cutcell_app.document import loading, look
+from cutcell_app.document.address import to_query
+from cutcell_app.document.state import PANELS
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.weights.bone import BONE
+from cutcell_app.headless import Choices, describe
+from cutcell_app.shell import keys
+from cutcell_app.shell.export_controls import EXPORT
+from cutcell_app.shell.sidebar import NO_SKELETON, panels
+from cutcell_app.shell.status import messages, summary
+from cutcell_app.widgets.controls import draw
+from tests.viewers.arm import arm_rig, bare_arm
 
 
 @pytest.fixture
 def after_a_rig(bound, loop):
     """Return a session on which a bare mesh stands, with all panels built for a rig before."""
-    bound.built = [panels(bound), bone(bound), export(bound), messages(bound)]
+    bound.built = [panels(bound), draw(bound, BONE), draw(bound, EXPORT), messages(bound)]
     for panel in PANELS:
         bound.state.panel = panel
-    show_bare(bound, loop)
+    loading.show_rig(bound, bare_arm())
+    loop.rest(bound)
     return bound
 
 
@@ -64,17 +47,18 @@ def test_every_panel_can_be_looked_at(after_a_rig, loop):
     state, (_, place) = after_a_rig.state, after_a_rig.built[0]
     for panel in PANELS:
         state.panel = panel
-        loop.run_for(0.1)
+        loop.rest(after_a_rig)
         assert state.message is None, panel
         assert "body" in resolve(state).actors, panel
-        told = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
-        assert (told == [NO_SKELETON]) == (panel not in ("graph", "check", "learn")), panel
+        reports = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
+        assert (reports == [NO_SKELETON]) == (panel not in ("graph", "check", "learn")), panel
 
 
-@pytest.mark.parametrize("panel", [panel.id for panel in PANELS.values() if not panel.needs_audit])
+@pytest.mark.parametrize("panel", [name for name, panel in PANELS.items() if not panel.needs_audit])
 def test_a_panel_that_needs_no_skeleton_stays_and_shows_its_own_scene(bare, loop, panel):
     bare.state.panel = panel
-    show_bare(bare, loop)
+    loading.show_rig(bare, bare_arm())
+    loop.rest(bare)
     stays = PANELS[panel].works_without_skeleton
     assert bare.state.panel == (panel if stays else "graph")
     assert ("interior edges" in resolve(bare.state).actors) == (bare.state.panel == "graph")
@@ -103,15 +87,15 @@ def test_cuts_slices_and_keys_do_no_harm(after_a_rig, loop):
     look.pick_vertex(bare, 0)
     assert state.vertex is None
     assert not state.moving
-    loop.run_for(0.1)
+    loop.rest(bare)
     assert state.message is None
 
 
 def test_another_resolution_builds_again(bare, loop):
-    before = bare.state.bare_graph
+    before = bare.state.built_graph
     bare.state.resolution = 24
-    loop.run_until(lambda: bare.state.bare_graph is not before)
-    assert bare.state.bare_graph.lattice.resolution == 24
+    loop.run_until(lambda: bare.state.built_graph is not before)
+    assert bare.state.built_graph.lattice.resolution == 24
     bare.state.resolution = 10_000
     loop.run_until(lambda: bare.state.message is not None)
     assert bare.state.message[0] == "error"
@@ -121,7 +105,7 @@ def test_another_resolution_builds_again(bare, loop):
 def test_a_character_after_it_is_bound_as_ever(bare, loop):
     loading.show_rig(bare, arm_rig())
     loop.run_until(lambda: bare.state.binding is not None)
-    assert bare.state.bare_graph is None
+    assert bare.state.graph is bare.state.binding.graph
     assert np.isfinite(bare.state.weights).all()
     assert "bones" in resolve(bare.state).actors
 

@@ -1,11 +1,13 @@
 """The panel Compare in a browser."""
 
+import re
+
 import numpy as np
 import pytest
 from playwright.sync_api import expect
 
 from cutcell_assets import demo_path
-from tests.app.browser import Visit, changed
+from tests.app.browser import changed
 from tests.conftest import SHARED_RIGS
 
 pytestmark = pytest.mark.slow
@@ -14,21 +16,15 @@ REAL = SHARED_RIGS / "webxr_hand_right.glb"
 SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 
-@pytest.fixture(scope="module")
-def opened(browser, url):
-    visit = Visit(browser, url + "/?rig=robot", viewport={"width": 1000, "height": 640})
+def test_methods_of_a_real_character_are_compared(visit):
     visit.open(SOURCE)
     visit.panel("Compare")
-    yield visit, visit.address
-    visit.close()
-
-
-@pytest.fixture
-def visit(opened):
-    """Show a real character on the panel Compare, with nothing else chosen."""
-    visit, address = opened
-    visit.go_back_to(address)
-    return visit
+    a_bone_is_picked_in_any_view(visit)
+    methods_stand_side_by_side_with_their_measures(visit)
+    one_camera_turns_all(visit)
+    differences_errors_and_poses_are_seen(visit)
+    the_largest_disagreement_is_mended(visit)
+    settings_are_swept_and_a_point_is_chosen(visit)
 
 
 def box(visit, name):
@@ -45,7 +41,7 @@ def measured(visit, name):
     return [float(text) for text in cells.all_inner_texts()[1:]]
 
 
-def test_methods_stand_side_by_side_with_their_measures(visit):
+def methods_stand_side_by_side_with_their_measures(visit):
     l1, deformation, seconds = measured(visit, "Euclidean")
     assert 0 < l1 < 2
     assert deformation > 0
@@ -66,7 +62,7 @@ def test_methods_stand_side_by_side_with_their_measures(visit):
     expect(box(visit, "From file")).to_be_disabled()
 
 
-def test_one_camera_turns_all(visit):
+def one_camera_turns_all(visit):
     before = visit.look()
     half = before.shape[1] // 2
     place = visit.page.get_by_role("application").bounding_box()
@@ -80,7 +76,28 @@ def test_one_camera_turns_all(visit):
         assert changed(before[:, side], after[:, side]) > 0.02
 
 
-def test_a_bone_is_picked_in_any_view(visit):
+def differences_errors_and_poses_are_seen(visit):
+    plain = visit.look()
+    visit.choose("Difference to", "From file")
+    visit.expect_text("difference")
+    difference = visit.look()
+    assert changed(plain, difference) > 0.005
+    assert captions(visit)[0] == "cutcell (current settings) − From file"
+    visit.button("Error").click()
+    visit.expect_text("Largest error for 30° turns")
+    assert changed(difference, visit.look()) > 0.005
+    still = visit.points("body 1")
+    visit.button("Play").click()
+    visit.page.wait_for_function("__cutcell.report().time > 0.3")
+    visit.button("Pause").click()
+    visit.page.wait_for_function("!__cutcell.report().playing")
+    assert np.abs(visit.points("body 1") - still).max() > 1e-3 * np.ptp(still)
+    visit.button("Rest pose").click()
+    visit.settle()
+    np.testing.assert_array_equal(visit.points("body 1"), still)
+
+
+def a_bone_is_picked_in_any_view(visit):
     expect(visit.bone).not_to_have_text("")
     chosen = visit.bone.inner_text()
     ends = visit.page.evaluate("""() => {
@@ -103,22 +120,41 @@ def test_a_bone_is_picked_in_any_view(visit):
     visit.expect_text(f"Weight of {other[0]}")
 
 
-def test_differences_errors_and_poses_are_seen(visit):
-    plain = visit.look()
-    visit.choose("Difference to", "From file")
-    visit.expect_text("difference")
-    difference = visit.look()
-    assert changed(plain, difference) > 0.005
-    assert captions(visit)[0] == "cutcell (current settings) − From file"
-    visit.button("Error").click()
-    visit.expect_text("Largest error for 30° turns")
-    assert changed(difference, visit.look()) > 0.005
-    still = visit.points("body 1")
-    visit.button("Play").click()
-    visit.page.wait_for_function("__cutcell.report().time > 0.3")
-    visit.button("Pause").click()
-    visit.page.wait_for_function("!__cutcell.report().playing")
-    assert np.abs(visit.points("body 1") - still).max() > 1e-3 * np.ptp(still)
-    visit.button("Rest pose").click()
+def the_largest_disagreement_is_mended(visit):
+    before = measured(visit, "current settings")[1]
+    rest = visit.points("body")
+    region = visit.page.get_by_text("of the error", exact=False).first
+    visit.reach(region)
+    visit.page.locator(".MuiAccordion-root", has=region).get_by_role("button").nth(1).click()
     visit.settle()
-    np.testing.assert_array_equal(visit.points("body 1"), still)
+    assert np.abs(visit.points("body") - rest).max() > 1e-3 * np.ptp(rest), "it is posed"
+    assert any(name.startswith("region") for name in visit.report()["actors"])
+    visit.page.get_by_role("button", name="Take this").press("Enter")
+    visit.settle()
+    expect(visit.page.get_by_role("button", name="Take this")).to_have_count(0)
+    assert measured(visit, "current settings")[1] < before
+
+
+def settings_are_swept_and_a_point_is_chosen(visit):
+    page = visit.page
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    values = visit.reach(page.get_by_label("Values", exact=True))
+    values.fill("8,12,1")
+    values.press("Enter")
+    page.get_by_role("button", name="Compute", exact=True).click()
+    expect(page.get_by_text("Resolution must be a whole number")).to_be_visible()
+    visit.settle()
+    point = page.get_by_role("button", name=re.compile(r"^12: 0\.\d+"))
+    point.hover()
+    expect(page.locator("figcaption .value")).to_have_text(re.compile("^12: 0"))
+    point.press("Enter")
+    expect(page.get_by_role("radio", name="12", exact=True)).to_be_checked()
+    page.get_by_role("radio", name="8", exact=True).check()
+    visit.settle()
+    visit.reach(page.get_by_role("button", name="Code")).click()
+    page.get_by_role("menuitem", name="Copy as command").click()
+    expect(page.get_by_text("Command copied")).to_be_visible()
+    line = page.evaluate("navigator.clipboard.readText()")
+    assert line.startswith("cutcell bind")
+    assert line.endswith(".layers.json"), "a region was mended"
+    visit.expect_text("which was downloaded")

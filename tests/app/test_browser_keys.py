@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from cutcell_app.state import PANELS
+from cutcell_app.document.state import PANELS
 
 pytestmark = pytest.mark.slow
 
@@ -86,19 +86,20 @@ def check_menu(visit, key):
     if menu.get_by_role("textbox").count():
         visit.page.wait_for_function(IS_SEARCH)
         visit.page.keyboard.press("ArrowDown")
-        visit.page.wait_for_function(f"() => ({ROLE})() === 'menuitem'")
+    visit.page.wait_for_function(f"() => ({ROLE})() === 'menuitem'")
     visit.page.keyboard.press("Escape")
     # Until the menu is gone, and not only its entries, it holds the focus.
     expect(visit.page.locator(".MuiPopover-root")).to_have_count(0)
     visit.page.wait_for_function(f"() => ({ROLE})() === 'combobox'")
 
 
-@pytest.mark.parametrize("panel", [p.title for p in PANELS.values() if not p.needs_audit])
-def test_every_control_is_reached_and_every_menu_opens_by_keys(visit, panel):
-    visit.panel(panel)
-    menus = walk(visit)
-    assert len(menus) >= 2, "those of the character and of the bone"
-    assert visit.page.evaluate(MISSED) == []
+def test_every_control_is_reached_and_every_menu_opens_by_keys(visit):
+    for panel in PANELS.values():
+        if panel.needs_audit:
+            continue
+        visit.panel(panel.title)
+        assert len(walk(visit)) >= 2, f"{panel.title}: the menus of the character and of the bone"
+        assert visit.page.evaluate(MISSED) == [], panel.title
 
 
 def test_a_joint_is_searched_for_and_chosen_by_keys(visit):
@@ -110,13 +111,13 @@ def test_a_joint_is_searched_for_and_chosen_by_keys(visit):
     close = menu.get_by_role("button", name="Clear search and close")
     expect(close).to_be_visible()
     names = [text for text in menu.get_by_role("menuitem").all_inner_texts() if text.strip()]
-    wanted = next(name for name in names if name != before and "foot" in name.lower())
+    wanted = next(name for name in names if name != before and "hand" in name.lower())
     keyboard.type(wanted)
     keyboard.press("Enter")
     expect(menu).to_have_count(0)
     expect(visit.bone).to_have_text(wanted)
+    visit.page.wait_for_function(f"() => ({ROLE})() === 'combobox'")
     visit.settle()
-    assert visit.page.evaluate(ROLE) == "combobox"
     keyboard.press("ArrowDown")
     visit.page.wait_for_function(IS_SEARCH)
     keyboard.type("no such joint")
@@ -132,13 +133,11 @@ def test_controls_work_by_keys(visit):
     page.get_by_role("tab", name="Weights", exact=True).focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
-    visit.settle()
     assert "panel=" in visit.address
     visit.panel("Weights")
     visit.slide("Max influences", "ArrowLeft")
-    visit.settle()
     assert "max_influences" in visit.address
-    mine = page.get_by_role("button", name="My weights")
+    mine = page.get_by_role("button", name="From file").first
     mine.focus()
     mine.press("Enter")
     visit.settle()
@@ -146,6 +145,7 @@ def test_controls_work_by_keys(visit):
     data = visit.button("Data")
     data.focus()
     data.press("Enter")
+    page.wait_for_function(f"() => ({ROLE})() === 'menuitem'")
     with page.expect_download() as download:
         page.keyboard.press("Enter")
     assert download.value.suggested_filename.endswith("-weights.csv")

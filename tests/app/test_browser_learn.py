@@ -1,83 +1,159 @@
-"""The tour in a browser, and links that another person opens."""
+"""The lesson in a browser: walked by keys, presented, and links that another person opens."""
 
 import re
 
 import pytest
 from playwright.sync_api import expect
 
-from cutcell_app.state.tour import TOUR
-from tests.app.browser import LOAD_MS, Visit
+from cutcell_app.features.learn.lesson import built_in
+from tests.app.browser import Visit
+from tests.app.test_browser_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
+LESSON = built_in()
+CARD_PART = """([card, canvas]) => {
+  const [a, b] = [card, canvas].map((one) => one.getBoundingClientRect())
+  return a.width * a.height / (b.width * b.height)
+}"""
+FOCUS_INSIDE = """() => {
+  let part = document.activeElement
+  while (part?.shadowRoot?.activeElement) { part = part.shadowRoot.activeElement }
+  return part.closest("header, nav") === null
+}"""
+
 
 def card(visit):
-    return visit.page.get_by_role("article", name="Tour")
+    return visit.page.get_by_role("article", name="Lesson")
 
 
-def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
-    visit = Visit(browser, url + "?panel=learn&step=4")
-    visit.wait_until_bound()
-    expect(card(visit)).to_contain_text(TOUR[3].title)
-    expect(visit.page.get_by_role("tab", name="Distance")).to_have_attribute(
-        "aria-selected", "true"
-    )
-    expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text("hand.L")
-    visit.page.wait_for_function("'path' in __cutcell.report().actors", timeout=LOAD_MS)
-    assert not visit.page.get_by_text(re.compile("^Vertex ")).is_visible()
-    visit.button("Back").click()
-    expect(card(visit)).to_contain_text(TOUR[2].title)
-    visit.page.wait_for_function("__cutcell.renderer.views.length === 2", timeout=LOAD_MS)
+def step(visit, number):
+    """Wait for a step of the lesson."""
+    visit.page.wait_for_function(f"new URLSearchParams(location.search).get('step') == {number}")
+    expect(card(visit)).to_contain_text(LESSON[number - 1].title)
+
+
+def answered(visit):
+    visit.page.wait_for_function("new URLSearchParams(location.search).has('answer')")
+
+
+def act(visit, expected):
+    """Answer in the flat scene by keys, once it shows this step."""
     visit.settle()
-    # The card covers none of the methods that stand side by side.
-    right, lower = visit.page.evaluate("""() => {
-      const {tiles} = __cutcell.renderer
-      const most = (end) => Math.max(...tiles.map(end))
-      return [most(([x, , w]) => x + w), most(([, y, , h]) => y + h)]
-    }""")
-    place = visit.page.get_by_role("application").bounding_box()
-    covered = card(visit).bounding_box()
-    beside = place["x"] + right <= covered["x"]
-    assert beside or place["y"] + lower <= covered["y"] + 1
-    # No step asks another machine for anything, nor does this address, which once did.
-    for number in range(4, len(TOUR) + 1):
-        visit.button("Next").click()
-        visit.page.wait_for_function(f"location.search.includes('step={number}')", timeout=LOAD_MS)
-        expect(card(visit)).to_contain_text(TOUR[number - 1].title)
-        whole, forward = (one.bounding_box() for one in (card(visit), card(visit).locator(".next")))
-        assert forward["x"] + forward["width"] <= whole["x"] + whole["width"], "nothing is cut off"
-        if TOUR[number - 1].title == "Diamonds and circles":
-            offer = card(visit).get_by_role("button", name="Any angle")
-            offer.click()
-            expect(offer).to_have_attribute("aria-pressed", "true")
+    flat = visit.page.get_by_role("region", name=re.compile("^Flat scene"))
+    expect(flat.locator("#say")).to_have_text(re.compile("Crossings|Corners|queue holds"))
+    if "corner" in expected:
+        for name in ("Corner A", "Corner B", "Corner C", "Tie"):
+            visit.button(name).press("Enter")
+    else:
+        canvas = visit.page.get_by_role("application", name=re.compile("Rays|Search"))
+        canvas.press("ArrowRight")
+        canvas.press("Enter")
+
+
+def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
+    visit = Visit(browser, url + "?step=1&resolution=16", viewport={"width": 1440, "height": 900})
+    page = visit.page
     visit.wait_until_bound()
-    notice, beside = visit.page.get_by_role("alert"), card(visit).bounding_box()
-    if notice.is_visible():
-        box = notice.bounding_box()
-        assert box["x"] + box["width"] <= beside["x"] or box["y"] + box["height"] <= beside["y"]
-    assert visit.page.evaluate("[...document.fonts].some((f) => f.family.includes('cutcell math'))")
-    visit.go("?rig=biped&panel=graph&bone=chest&step=5")
+    expect(card(visit)).to_contain_text(LESSON[0].question)
+    page.wait_for_function("__cutcell.brush.part")
+    page.get_by_role("application").focus()
+    page.keyboard.press("Enter")  # paints at the cross
+    visit.button("Lift").press("Enter")
+    answered(visit)
+    expect(card(visit)).to_contain_text(re.compile(r"agree to \d+%"))
+    expect(card(visit)).to_contain_text(LESSON[0].sentence)
+    page.wait_for_function("__cutcell.renderer.views.length === 2")
+    canvas = page.get_by_role("application").element_handle()
+    for number in range(2, len(LESSON) + 1):
+        page.keyboard.press("PageDown")
+        step(visit, number)
+        answer = LESSON[number - 1].answer
+        if answer.kind == "number":
+            box = card(visit).get_by_role("spinbutton")
+            box.fill("0.6")
+            box.press("Enter")
+        elif answer.kind == "choice":
+            card(visit).get_by_role("button", name=answer.expected, exact=True).press("Enter")
+        elif "flat=" in LESSON[number - 1].address:
+            act(visit, answer.expected)
+        else:
+            page.keyboard.press("PageDown")
+        answered(visit)
+        expect(card(visit)).to_contain_text(LESSON[number - 1].sentence)
+        assert page.evaluate(CARD_PART, [card(visit).element_handle(), canvas]) < 1 / 3
+    expect(card(visit)).to_contain_text(re.compile(r"of \d+ right"))
+    assert faults(visit) == []
+    page.go_back()
+    step(visit, len(LESSON) - 1)
+    answered(visit)
+    page.keyboard.press("PageUp")
+    step(visit, len(LESSON) - 2)
     visit.button("Leave").click()
     expect(card(visit)).to_be_hidden()
     visit.close()
 
 
-def test_another_person_sees_the_same_comparison(browser, visit):
-    one = visit
-    one.go("?rig=robot&panel=compare&resolution=24")
-    one.page.get_by_role("checkbox", name="From file").uncheck()
-    one.choose("Difference to", "Euclidean")
-    one.expect_text("difference")
-    one.page.wait_for_function("location.search.includes('minus=euclidean')", timeout=LOAD_MS)
-    one.settle()
-    captions = one.page.locator(".caption").all_inner_texts()
-    assert captions == ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
-    other = Visit(browser, one.page.url)
-    other.wait_until_bound()
-    expect(other.page.locator(".caption")).to_have_text(captions, timeout=LOAD_MS)
-    other.expect_text("difference")
-    one.button("Undo").click()
-    one.page.wait_for_function("!location.search.includes('minus')", timeout=LOAD_MS)
-    one.button("Undo").click()
-    one.page.wait_for_function("!location.search.includes('methods')", timeout=LOAD_MS)
-    other.close()
+def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
+    visit = Visit(browser, url + "?step=4&resolution=16", viewport={"width": 1280, "height": 720})
+    page = visit.page
+    visit.wait_until_bound()
+    page.keyboard.press("f")
+    caption = card(visit).locator(".question")
+    expect(card(visit)).to_have_class(re.compile("staged"))
+    size = float(caption.evaluate("one => getComputedStyle(one).fontSize").removesuffix("px"))
+    assert 24 <= size <= 32
+    box = page.locator(".viewport").bounding_box()
+    assert (box["x"], box["y"], box["width"]) == (0, 0, 1280)
+    page.keyboard.press("Tab")
+    assert page.evaluate(FOCUS_INSIDE)
+    page.evaluate("document.activeElement.blur()")
+    for key, black in (("b", True), (".", False)):  # as a remote asks for
+        page.keyboard.press(key)
+        expect(page.locator(".black")).to_be_visible(visible=black)
+    assert page.evaluate("!__cutcell.brush.part")
+    assert faults(visit) == []
+    with page.expect_popup() as opened:
+        page.keyboard.press("n")
+    notes = opened.value
+    expect(notes.get_by_role("region", name="Notes")).to_contain_text(LESSON[3].title)
+    page.keyboard.press("PageDown")
+    answered(visit)
+    expect(card(visit).locator(".sentence")).to_be_visible()
+    page.keyboard.press("ArrowRight")
+    step(visit, 5)
+    expect(notes.get_by_role("region", name="Notes")).to_contain_text(LESSON[4].title)
+    notes.get_by_role("button", name="Back").click()
+    step(visit, 4)
+    assert "stage=1" in page.url
+    page.keyboard.press("Escape")
+    expect(card(visit)).not_to_have_class(re.compile("staged"))
+    expect(page.get_by_role("combobox", name="Bone")).to_have_text("chest")
+    visit.close()
+
+
+def test_a_link_shows_the_same_comparison(visit):
+    visit.panel("Compare")
+    visit.page.get_by_role("checkbox", name="From file").uncheck()
+    visit.choose("Difference to", "Euclidean")
+    visit.expect_text("difference")
+    visit.page.wait_for_function("location.search.includes('minus=euclidean')")
+    link, captions = visit.address, visit.page.locator(".caption")
+    expected = ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
+    expect(captions).to_have_text(expected)
+    visit.go(visit.first[0])
+    expect(captions).to_have_count(0)
+    visit.go(link)
+    expect(captions).to_have_text(expected)
+    visit.expect_text("difference")
+
+
+def test_choices_of_a_comparison_are_undone(visit):
+    visit.panel("Compare")
+    visit.page.get_by_role("checkbox", name="From file").uncheck()
+    visit.choose("Difference to", "Euclidean")
+    visit.settle()
+    visit.button("Undo").click()
+    visit.page.wait_for_function("!location.search.includes('minus')")
+    visit.button("Undo").click()
+    visit.page.wait_for_function("!location.search.includes('methods')")

@@ -29,7 +29,6 @@ def nasty(tmp_path):
 
 
 def test_names_are_text(visit, nasty):
-    visit.go("?rig=robot&resolution=16")
     visit.open(nasty)
     visit.expect_text("_a_ `c`")
     for panel in ("Weights", "Distance", "Graph", "Pose", "Compare"):

@@ -15,9 +15,9 @@ import cutcell
 from cutcell.io.interactive import Page
 from cutcell.runtime import compile_cache
 from cutcell.weights.warm_up import is_compiled, warm_up
-from cutcell_app.standalone.page import interactive_page
-from cutcell_app.standalone.widget import PageWidget
-from cutcell_assets import demo_path
+from cutcell_app.headless import notebook_widget
+from cutcell_app.headless.interactive import interactive_page
+from cutcell_app.headless.notebook_widget import PageWidget
 from tests.app.browser import IN_SIGHT, Visit
 
 HTML = "text/html"
@@ -31,7 +31,7 @@ SETUP = """from pathlib import Path
 from cutcell.runtime import compile_cache
 compile_cache.folders = lambda: (Path({!r}),)"""
 CELLS = (
-    f"import cutcell\nrig = cutcell.load({str(demo_path('robot'))!r})\nrig",
+    "import cutcell\nrig = cutcell.load({!r})\nrig",
     "rig.mesh",
     "rig.skeleton",
     "binding = cutcell.bind(rig)\nbinding",
@@ -76,7 +76,7 @@ window.listening = () => Object.values(listeners).reduce((sum, {size}) => sum + 
 
 
 @pytest.fixture(scope="module")
-def outputs(tmp_path_factory):
+def outputs(small_path, tmp_path_factory):
     """Run the cells on a machine that has yet to compile two functions; return their outputs."""
     if not is_compiled():
         warm_up()
@@ -87,7 +87,8 @@ def outputs(tmp_path_factory):
     assert len(left_out) >= len(NOT_COMPILED)
     for path in set(compiled.glob("*.kernel")) - left_out:  # others may be written meanwhile
         shutil.copy(path, kernels)
-    cells = [SETUP.format(str(kernels)), *CELLS]
+    first, *others = CELLS
+    cells = [SETUP.format(str(kernels)), first.format(str(small_path)), *others]
     notebook = nbformat.v4.new_notebook(cells=list(map(nbformat.v4.new_code_cell, cells)))
     path = folder / "notebook.ipynb"
     nbformat.write(notebook, path)
@@ -155,7 +156,7 @@ class Framed(Visit):
 
 def test_the_page_in_an_output_is_interactive(outputs, browser, tmp_path):
     data = result(outputs[SHOW])
-    assert WIDGET in data
+    assert WIDGET not in data, "it would be shown instead, and be empty offline"
     content = f'<!doctype html><div style="width: 800px">{data[HTML]}</div>'
     visit = Framed(browser, content, tmp_path / "output.html")
     assert visit.page.locator("iframe").bounding_box()["width"] == 800
@@ -167,14 +168,17 @@ def test_the_page_in_an_output_is_interactive(outputs, browser, tmp_path):
 
 
 @pytest.fixture
-def widget(robot):
-    page = Page(interactive_page(robot, cutcell.bind(robot)))
-    widget = PageWidget(robot, page)
+def widget(small, monkeypatch):
+    page = Page(interactive_page(small, cutcell.bind(small)))
+    widget = PageWidget(small, page)
+    monkeypatch.setattr(notebook_widget, "is_attended", lambda: True)
+    data, _ = widget._repr_mimebundle_()
+    assert {WIDGET, HTML} <= set(data)
     yield widget
     widget.close()
 
 
-def test_joint_and_vertex_are_those_of_python(widget, robot, browser, tmp_path):
+def test_joint_and_vertex_are_those_of_python(widget, browser, tmp_path):
     names = ("content", "height", "joint", "vertex")
     script = base64.b64encode(str(widget._esm).encode()).decode()
     state = json.dumps(widget.get_state(names)).replace("<", r"\u003c")

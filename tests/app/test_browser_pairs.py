@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 from cutcell_lab.dataset import load_audit
 from tests.app.audits import saved_audit
 from tests.app.browser import Visit, changed, served
-from tests.app.test_browser_accessibility import lasting
+from tests.app.test_browser_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
@@ -36,6 +36,6 @@ def test_pairs_are_stepped_through_and_overruled(browser, tmp_path):
         visit.expect_text("Pair 3 of 3.")
         visit.settle()
         expect(visit.button("Different")).to_have_attribute("aria-pressed", "true")
-        assert lasting(visit, {}) == []
+        assert faults(visit) == []
         visit.close()
     assert list(load_audit(folder).verdicts.values()) == ["different"] * 2

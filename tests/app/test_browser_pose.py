@@ -7,42 +7,23 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from cutcell_assets import demo_path
+from cutcell.pose import axis_rotation
 from cutcell_viewers.character import pose_in_scene
-from cutcell_viewers.pose_scene import joint_turns, turn
-from tests.app.browser import Visit, changed
-from tests.conftest import SHARED_RIGS
+from cutcell_viewers.pose_scene import joint_turns
+from tests.app.browser import SCALE, changed
+from tests.app.small import RESOLUTION
 from tests.viewers.textures import png, seen, squares, wall
 
 pytestmark = pytest.mark.slow
 
-REAL = SHARED_RIGS / "quaternius_wizard.glb"
 TWO_FRAMES = "new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
-SOURCE = REAL if REAL.exists() else demo_path("rabbit")
-
-
-@pytest.fixture(scope="module")
-def opened(browser, url):
-    size = {"width": 1000, "height": 640}
-    visit = Visit(browser, url + "/?rig=robot", viewport=size, has_touch=True)
-    visit.open(SOURCE)
-    visit.panel("Pose")
-    yield visit, visit.address
-    visit.close()
 
 
 @pytest.fixture
-def visit(opened):
-    """Show a real character at rest on the panel Pose, with nothing else chosen."""
-    visit, address = opened
-    visit.go_back_to(address)
-    rest(visit)
+def visit(visit):
+    """Show the figure at rest on the panel Pose."""
+    visit.panel("Pose")
     return visit
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return cutcell.load(SOURCE)
 
 
 def drag_ring(visit, axis, dx, dy):
@@ -52,9 +33,9 @@ def drag_ring(visit, axis, dx, dy):
     visit.page.mouse.move(x + dx, y + dy, steps=6)
     visit.page.evaluate(TWO_FRAMES)  # the last move is handled with the next frame
     local = visit.points()
-    told = visit.page.locator(".angle")
-    expect(told).to_contain_text(f"{'XYZ'[axis]} ")
-    degrees = told.inner_text().split()[1].rstrip("°")
+    reports = visit.page.locator(".angle")
+    expect(reports).to_contain_text(f"{'XYZ'[axis]} ")
+    degrees = reports.inner_text().split()[1].rstrip("°")
     visit.page.mouse.up()
     expect(slider(visit, "XYZ"[axis])).to_have_value(degrees)
     visit.settle()
@@ -69,6 +50,13 @@ def angle(visit, axis):
     return float(slider(visit, axis).input_value())
 
 
+def pose_of(visit, small):
+    """Return the pose of the chosen bone that the slider about z turns."""
+    joint = small.skeleton.names.index(visit.bone.inner_text())
+    turns = joint_turns(small, {joint: axis_rotation("z", angle(visit, "Z"))})
+    return pose_in_scene(small, cutcell.forward_kinematics(small.skeleton, turns))
+
+
 def rest(visit):
     visit.settle()
     button = visit.button("Rest pose")
@@ -78,7 +66,7 @@ def rest(visit):
     visit.settle()
 
 
-def test_a_ring_turns_the_joint_and_the_server_agrees(visit, rig):
+def test_a_ring_turns_the_joint_and_the_server_agrees(visit, small):
     still = visit.points()
     before = visit.look()
     local = drag_ring(visit, 2, -50, 50)
@@ -88,13 +76,8 @@ def test_a_ring_turns_the_joint_and_the_server_agrees(visit, rig):
     degrees = angle(visit, "Z")
     assert abs(degrees) > 10
     assert angle(visit, "X") == angle(visit, "Y") == 0
-    name = visit.bone.inner_text()
-    joint = rig.skeleton.names.index(name)
-    transforms = cutcell.forward_kinematics(
-        rig.skeleton, joint_turns(rig, {joint: turn("z", degrees)})
-    )
-    weights = cutcell.bind(rig).weights
-    expected = cutcell.linear_blend_skinning(still, weights, pose_in_scene(rig, transforms))
+    weights = cutcell.bind(small, RESOLUTION).weights
+    expected = cutcell.linear_blend_skinning(still, weights, pose_of(visit, small))
     np.testing.assert_allclose(visit.points(), expected, atol=1e-4 * np.ptp(still))
     rest(visit)
     np.testing.assert_array_equal(visit.points(), still)
@@ -111,10 +94,19 @@ def test_a_finger_turns_a_ring_too(visit):
     rest(visit)
 
 
-def test_what_the_card_draws_is_where_the_points_are(visit):
-    plain = visit.look()
+@pytest.mark.parametrize("blending", ["Linear", "Dual quaternions"])
+def test_what_the_card_draws_is_where_the_points_are(visit, small, blending):
+    plain, still = visit.look(), visit.points()
     visit.slide("About Z", "PageUp", 4)
     visit.settle()
+    pose, binding = pose_of(visit, small), cutcell.bind(small, RESOLUTION)
+    linear = cutcell.linear_blend_skinning(still, binding.weights, pose)
+    dual = cutcell.dual_quaternion_skinning(still, binding.weights, pose)
+    assert np.abs(linear - dual).max() > 1e-3 * np.ptp(still)
+    visit.button(blending).click()
+    visit.settle()
+    expected = linear if blending == "Linear" else dual
+    np.testing.assert_allclose(visit.points(), expected, atol=1e-4 * np.ptp(still))
     turned = visit.look()
     visit.page.evaluate("""() => {
       const {renderer} = __cutcell
@@ -133,6 +125,7 @@ def test_what_the_card_draws_is_where_the_points_are(visit):
       for (const [actor, rest] of window.__rests) { actor.setPoints(rest) }
       __cutcell.applyPose()
     }""")
+    visit.button("Linear").click()
     rest(visit)
 
 
@@ -160,7 +153,7 @@ def test_the_worst_turns_are_a_click_away(visit):
 def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
     visit.page.get_by_role("list", name="Largest errors").get_by_role("button").first.click()
     visit.expect_text(re.compile(r"RMS [\d.e-]+ mm in this pose"))
-    alone = visit.look()
+    alone, camera = visit.look(), visit.report()["camera"]
     visit.button("Ghost").click()
     ghost = visit.look()
     assert changed(alone, ghost) > 0.0002
@@ -173,7 +166,8 @@ def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
         assert np.ptp(side.reshape(-1, 3), axis=0).max() > 100  # somebody stands on either side
     visit.button("Alone").click()
     visit.page.wait_for_function("__cutcell.renderer.views.length < 2")
-    assert changed(alone, visit.look()) < 0.05  # the camera frames the body anew, a pixel nearer
+    visit.settle()
+    np.testing.assert_allclose(visit.report()["camera"], camera, rtol=0.05)  # framed anew
 
 
 def test_a_motion_runs_halts_and_is_moved_through(visit):
@@ -229,9 +223,9 @@ def test_the_files_materials_are_seen_as_it_moves(visit, tmp_path):
             share[near], share[near - 2] = 0.8, 0
             point = (share @ corners).tolist()
             x, y, _ = visit.page.evaluate("at => __cutcell.renderer.project(at)", point)
-            found, expected = pixels[round(y), round(x)], seen(u, v).astype(int)
+            result, expected = pixels[round(y * SCALE), round(x * SCALE)], seen(u, v).astype(int)
             np.testing.assert_array_equal(
-                found > 0.6 * found.max(), expected > 0.6 * expected.max(), f"{near} {turned}"
+                result > 0.6 * result.max(), expected > 0.6 * expected.max(), f"{near} {turned}"
             )
     visit.button("Plain").click()
     grey = visit.look()
@@ -247,6 +241,7 @@ def test_what_is_behind_shines_through_blended_materials(visit, tmp_path):
     pixels = visit.look()
     middle = visit.points()[[0, 2]].mean(axis=0).tolist()
     x, y, _ = visit.page.evaluate("at => __cutcell.renderer.project(at)", middle)
-    part = pixels[round(y) - 60 : round(y) - 20, round(x) - 60 : round(x) - 20]
+    x, y = round(x * SCALE), round(y * SCALE)
+    part = pixels[y - 30 : y - 10, x - 30 : x - 10]
     red = part[..., 0] - part[..., 1] > 60
     assert abs(red.mean() - 0.5) < 0.1

@@ -3,8 +3,6 @@
 import pytest
 from playwright.sync_api import expect
 
-from tests.app.browser import LOAD_MS
-
 pytestmark = pytest.mark.slow
 
 WIDE = {"width": 1440, "height": 900}
@@ -66,7 +64,7 @@ def test_on_a_telephone_on_its_side_the_legend_is_beside_the_character(visit):
 @pytest.mark.parametrize("demo", ["rabbit", "biped"])
 def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(wide, demo):
     visit = wide
-    visit.go(f"?rig={demo}")
+    visit.go(f"?rig={demo}&resolution=16")
     for place in (".legend", ".hint", ".tools"):
         assert behind(visit, visit.page.locator(place)) == 0, place
     home = visit.page.evaluate(MIDDLE)
@@ -83,7 +81,7 @@ def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(wide, demo):
     assert visit.page.evaluate(MIDDLE) == home
     visit.panel("Pose")
     visit.button("Play").click()
-    visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_function("__cutcell.report().playing")
     bar = visit.page.locator(".transport")
     expect(bar).to_be_visible()
     visit.button("Pause the motion").click()
@@ -92,7 +90,7 @@ def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(wide, demo):
 
 def test_a_notice_hides_no_head_and_the_legend_gives_way(wide):
     visit = wide
-    visit.go("?rig=biped_cape")
+    visit.go("?rig=biped_cape&resolution=16")
     assert behind(visit, visit.page.get_by_role("alert")) == 0
     visit.dismiss()
     visit.settle()

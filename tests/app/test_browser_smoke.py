@@ -7,6 +7,7 @@ import numpy as np
 import cutcell
 from cutcell_assets import demo_path
 from tests.app.browser import changed
+from tests.app.small import RESOLUTION
 from tests.conftest import SHARED_RIGS
 
 
@@ -26,5 +27,5 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     download.value.save_as(bound)
     loaded = cutcell.load(bound)
     np.testing.assert_array_equal(loaded.mesh.vertices, rig.mesh.vertices)
-    expected = cutcell.bind(rig).weights
+    expected = cutcell.bind(rig, RESOLUTION).weights
     np.testing.assert_allclose(loaded.weights, expected, atol=1e-6)

@@ -6,10 +6,11 @@ import pytest
 
 from cutcell.isolated.run import _WANTED
 from cutcell.runtime.progress import silent
-from cutcell_app.commands import compare, loading
-from cutcell_app.jobs.jobs import COMPARING, Job
-from cutcell_app.layout.session import begin
-from cutcell_app.panels.compare import rows_of
+from cutcell_app.derive.jobs import COMPARING, Job
+from cutcell_app.document import loading
+from cutcell_app.features.compare import results as compare
+from cutcell_app.features.compare.controls import rows_of
+from cutcell_app.shell.begin import begin
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from tests.viewers.arm import arm_rig
 
@@ -56,7 +57,7 @@ def test_a_slow_method_of_one_session_does_not_hold_up_another(sessions, loop, s
     assert began.wait(20)
     other.state.param.update(panel="compare", methods=["now", "euclidean"])
     loop.run_until(lambda: len(other.state.compared) == 2, 60)
-    assert one.state.comparing == "slow"
+    assert ("compared", "slow") in one.state.computing
     assert note(one, "slow") == "Computing"
     compare.cancel(one)
     assert stopped.wait(20)  # it was asked whether it is still wanted
@@ -65,12 +66,15 @@ def test_a_slow_method_of_one_session_does_not_hold_up_another(sessions, loop, s
 
 def test_who_waits_is_told_so_and_can_leave(sessions, loop):
     session = sessions[0]
-    others = [Job(loop, silent) for _ in range(4)]
+    others = [Job(loop, silent, silent, silent, silent, COMPARING) for _ in range(4)]
     assert all(COMPARING.take(job, 1) for job in others)
     try:
         session.state.param.update(panel="compare", methods=["now", "euclidean"])
         loop.run_until(lambda: session.state.queued)
         assert note(session, "now") == "Waiting for other visitors"
+        session.state.panel = "weights"
+        assert not session.state.queued, "who left waits no more"
+        session.state.panel = "compare"
     finally:
         for job in others:
             COMPARING.give_back(job)

@@ -1,6 +1,7 @@
-"""Corrections on the page: what they make of the weights, and where they are kept."""
+"""Edits on the page: what they make of the weights, and where they are kept."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import panel_material_ui as pmui
@@ -8,66 +9,81 @@ import pytest
 import trimesh
 
 import cutcell
-from cutcell import Corrections, JointCorrection, PartCorrection
+from cutcell import (
+    Attached,
+    Computed,
+    Edits,
+    Filled,
+    FromFile,
+    JointEdit,
+    Layer,
+    Locked,
+    Mask,
+    Painted,
+)
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import count
-from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
-from cutcell_app.commands.binding import restore
-from cutcell_app.panels.components import parts_of_mesh
-from cutcell_app.panels.export import changes_of, export
-from cutcell_app.panels.joints import joints
-from cutcell_app.scenes import resolve
-from cutcell_app.scenes.facts import vertex_facts
-from cutcell_app.scenes.warnings import warnings
-from cutcell_app.state.corrections import MAX_IN_ADDRESS, from_text, to_text
-from cutcell_app.state.tour import TOUR
-from cutcell_app.state.url import from_query
+from cutcell_app.document import arrival, loading, look
+from cutcell_app.document.address import from_query
+from cutcell_app.document.loading import restore
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.features.correct import moving
+from cutcell_app.features.correct.choices import MAX_IN_ADDRESS, from_text, to_text
+from cutcell_app.features.correct.component_controls import COMPONENTS
+from cutcell_app.features.correct.joint_controls import JOINTS
+from cutcell_app.features.correct.joints import joint_rows
+from cutcell_app.features.layers import commands as layers
+from cutcell_app.features.layers.stack import painted_vertices
+from cutcell_app.features.learn import steps as lesson
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.weights.facts import vertex_facts
+from cutcell_app.shell import keys
+from cutcell_app.shell.export_controls import EXPORT, changes_of
+from cutcell_app.shell.warnings import warnings
+from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree
 from cutcell_app.widgets.rows import Rows
+from tests.app.loop import check_bound_as_by_core, settled
 from tests.viewers.arm import arm_rig
 
-ALL = Corrections(
-    joints={
-        "shoulder": JointCorrection(gain=2.0, radius=0.4),
-        "wrist": JointCorrection(locked=True),
-    },
-    vertices={7: {"shoulder": 0.5, "wrist": 0.5}},
+PART = Mask(part=3)
+REACH = Layer(Computed(gain={"shoulder": 2.0}, radius={"shoulder": 0.4}), name="Reach of joints")
+ALL = Edits(
+    layers=[
+        REACH,
+        Layer(Painted([7], ["shoulder", "wrist"], [[0.5, 0.5]])),
+        Layer(Locked(["wrist"])),
+    ]
 )
-
-
-def settled(session, loop):
-    loop.run_until(lambda: not session.tasks.running)
-    assert session.state.message is None, session.state.message
-
-
-def the_same_as_bind(session):
-    state = session.state
-    fresh = cutcell.bind(arm_rig(), state.resolution, corrections=state.corrections)
-    np.testing.assert_allclose(state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
+SOME = Mask(vertices=range(0, 40, 2))
 
 
 @pytest.mark.parametrize("falloff", ["rig", "paper"])
 @pytest.mark.parametrize(
-    "corrections",
+    "edits",
     [
         ALL,
-        Corrections(joints={"elbow": JointCorrection(deform=False)}),
-        Corrections(parts={3: PartCorrection("glued", "elbow")}),
-        Corrections(parts={3: PartCorrection("itself")}),
+        Edits(joints={"elbow": JointEdit(deform=False)}),
+        Edits(layers=[Layer(Filled({"elbow": 1}), PART)]),
+        Edits(layers=[Layer(Computed(as_skin=True), PART)]),
+        Edits(
+            layers=[Layer(Computed({"resolution": 20}), SOME, opacity=0.5), Layer(FromFile(), PART)]
+        ),
+        Edits(base="file", layers=[Layer(Computed({"method": "paper"}), SOME)]),
     ],
 )
-def test_weights_are_those_of_bind(bound, loop, corrections, falloff):
+def test_weights_are_those_of_bind(bound, loop, edits, falloff):
     graph = bound.state.binding.graph
-    correct.correct(bound, corrections)
+    correct.correct(bound, edits)
     settled(bound, loop)
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
     assert bound.state.binding.graph is graph
     bound.state.falloff = falloff
     settled(bound, loop)
     alpha = {"alpha": 0.5} if falloff == "paper" else {}
     options = {"falloff": falloff, "leaf": "fit", **alpha}
-    fresh = cutcell.bind(arm_rig(), 16, corrections=corrections, **options)
+    fresh = cutcell.bind(arm_rig(), 16, edits=edits, **options)
     np.testing.assert_allclose(bound.state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
 
 
@@ -78,58 +94,58 @@ def test_they_stay_with_another_resolution_and_are_undone_in_one_step(bound, loo
     corrected = bound.state.binding.weights
     bound.state.resolution = 20
     settled(bound, loop)
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
     keys.act(bound, "undo")
     settled(bound, loop)
     assert np.array_equal(bound.state.binding.weights, corrected)
     keys.act(bound, "undo")
     settled(bound, loop)
-    assert not bound.state.corrections
+    assert not bound.state.edits
     assert np.array_equal(bound.state.binding.weights, plain)
     assert not bound.history.can_undo
     keys.act(bound, "redo")
     settled(bound, loop)
-    assert bound.state.corrections == ALL
+    assert bound.state.edits == ALL
     keys.act(bound, "reset")
     settled(bound, loop)
-    assert not bound.state.corrections
+    assert not bound.state.edits
 
 
 def test_a_joint_that_is_left_out_comes_back_as_the_file_has_it(bound, loop):
     first = bound.state.rig
     correct.correct_joint(bound, 2, deform=False)
     settled(bound, loop)
-    assert bound.state.corrections.joints == {"wrist": JointCorrection(deform=False)}
+    assert bound.state.edits.joints == {"wrist": JointEdit(deform=False)}
     assert not bound.state.rig.skeleton.deform[2]
     assert not bound.state.binding.weights[:, 2].any()
     correct.correct_joint(bound, 2, deform=True)
-    assert not bound.state.corrections
+    assert not bound.state.edits
     assert np.array_equal(bound.state.rig.skeleton.deform, first.skeleton.deform)
     correct.correct_joint(bound, 0, gain=99)
     assert "Gain must be" in bound.state.message[1]
-    assert not bound.state.corrections
+    assert not bound.state.edits
 
 
 def test_what_cannot_be_is_told_and_not_taken(bound, loop):
     rig = arm_rig()
     correct.choose_deform(bound, [])
     assert "No joint is left" in bound.state.message[1]
-    correct.open_text(bound, '{"joints": {"tail": {"gain": 2}}}')
+    correct.open_text(bound, '{"joints": {"tail": {"deform": true}}}')
     assert 'no joint "tail"' in bound.state.message[1]
     correct.open_text(bound, "no")
     assert "no JSON" in bound.state.message[1]
-    assert not bound.state.corrections
+    assert not bound.state.edits
     # What only the weights tell is taken back with the weights that there are.
-    correct.correct(bound, Corrections(parts={0: PartCorrection("touching")}))
-    loop.run_until(lambda: not bound.tasks.running)
+    correct.correct(bound, Edits(layers=[Layer(Attached())]))
+    loop.rest(bound)
     assert "None is left" in bound.state.message[1] or "none is left" in bound.state.message[1]
-    assert not bound.state.corrections
+    assert not bound.state.edits
     assert not bound.history.can_undo
-    alone = to_text(Corrections(parts={0: PartCorrection("touching")}))
-    bound.arrival = {"corrections": alone}
+    alone = to_text(Edits(layers=[Layer(Attached())]))
+    bound.arrival = {"edits": alone}
     loading.show_rig(bound, arm_rig())
     loop.run_until(lambda: bound.state.binding is not None)
-    assert not bound.state.corrections
+    assert not bound.state.edits
     loading.show_rig(bound, rig.with_weights(None))
     loop.run_until(lambda: bound.state.binding is not None)
     correct.correct_joint(bound, 0, locked=True)
@@ -141,16 +157,14 @@ def test_what_cannot_be_is_told_and_not_taken(bound, loop):
 
 
 def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
-    glued = Corrections(
-        joints={"wrist": JointCorrection(locked=True)}, parts={3: PartCorrection("glued", "elbow")}
-    )
-    correct.correct(bound, glued)
+    rigid = Layer(Filled({"elbow": 1}), PART)
+    correct.correct(bound, Edits(layers=[rigid, Layer(Locked(["wrist"]))]))
     settled(bound, loop)
-    told = [door.text for door in warnings(bound.state) if "vertex 3 " in door.text]
-    assert len(told) == 1
-    assert "elbow" in told[0]
-    assert "wrist" in told[0]
-    correct.correct(bound, replace(glued, joints={}))
+    reports = [door.text for door in warnings(bound.state) if "vertex 3 " in door.text]
+    assert len(reports) == 1
+    assert "elbow" in reports[0]
+    assert "wrist" in reports[0]
+    correct.correct(bound, Edits(layers=[rigid]))
     settled(bound, loop)
     assert not any("vertex 3 " in door.text for door in warnings(bound.state))
 
@@ -163,7 +177,7 @@ def test_all_parts_start_from_the_files_weights(bound, loop):
     settled(bound, loop)
     assert correct.uses_file(bound)
     np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
     assert "recomputed" not in changes_of(bound.state)
     correct.choose_file(bound, False)
     settled(bound, loop)
@@ -174,14 +188,14 @@ def test_all_parts_start_from_the_files_weights(bound, loop):
 
 
 def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
-    (whose,) = export(bound).select(pmui.RadioButtonGroup)
+    (whose,) = draw(bound, EXPORT).select(pmui.RadioButtonGroup)
     assert (whose.value, whose.visible, whose.disabled) == (False, True, False)
     whose.value = True
     settled(bound, loop)
     assert correct.uses_file(bound)
     correct.overrule(bound, 3, {2: 1.0})
     settled(bound, loop)
-    together = len(bound.state.corrections.vertices)
+    together = len(painted_vertices(bound.state.edits))
     assert changes_of(bound.state) == f"{count(together, 'vertex')} painted."
     assert whose.value is True
     correct.clear(bound)
@@ -193,55 +207,53 @@ def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
 
 def test_single_vertices_get_the_files_weights(bound, loop):
     which, before = np.array([3, 30]), bound.state.binding.weights
-    correct.keep_file_vertices(bound, which)
+    layers.take_from_file(bound, which)
     settled(bound, loop)
     weights = bound.state.binding.weights
     np.testing.assert_allclose(weights[which], bound.state.rig.weights[which], atol=1e-12)
     others = np.delete(np.arange(len(weights)), which)
     np.testing.assert_array_equal(weights[others], before[others])
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
 
 
 def test_an_address_brings_them_back(bound, loop):
     correct.correct(bound, ALL)
     settled(bound, loop)
-    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["edits"]
     assert from_text(said) == ALL
-    bound.arrival = {"corrections": said}
+    bound.arrival = {"edits": said}
     loading.show_rig(bound, arm_rig())
-    assert bound.state.corrections == ALL
+    assert bound.state.edits == ALL
     settled(bound, loop)
-    the_same_as_bind(bound)
-    for wrong in ("nothing", to_text(Corrections(joints={"tail": JointCorrection(gain=2)}))):
-        bound.arrival = {"corrections": wrong}
+    check_bound_as_by_core(bound, arm_rig())
+    for wrong in ("nothing", to_text(Edits(joints={"tail": JointEdit(deform=True)}))):
+        bound.arrival = {"edits": wrong}
         loading.show_rig(bound, arm_rig())
-        loop.run_until(lambda: not bound.tasks.running)
-        assert "were not taken" in bound.state.message[1]
-        assert not bound.state.corrections
+        loop.rest(bound)
+        assert "were not applied" in bound.state.message[1]
+        assert not bound.state.edits
 
 
 def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
     rng = np.random.default_rng(1)
     count = len(arm_rig().mesh.vertices)
-    many = Corrections(
-        vertices={v: dict(zip(("shoulder", "elbow", "wrist"), rng.random(3), strict=True))
-                  for v in range(count)}
-    )  # fmt: skip
+    painting = Painted(range(count), ("shoulder", "elbow", "wrist"), rng.random((count, 3)))
+    many = Edits(layers=[Layer(painting)])
     correct.correct(bound, many)
     settled(bound, loop)
-    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["edits"]
     assert said.startswith("~")
     assert len(to_text(many)) > MAX_IN_ADDRESS > len(said)
     correct.clear(bound)
     settled(bound, loop)
-    bound.arrival = {"corrections": said}
+    bound.arrival = {"edits": said}
     loading.show_rig(bound, arm_rig())
     settled(bound, loop)
-    assert bound.state.corrections.vertices[7] == pytest.approx(many.vertices[7])
-    the_same_as_bind(bound)
-    bound.arrival = {"corrections": "~gone"}
+    assert bound.state.edits == many
+    check_bound_as_by_core(bound, arm_rig())
+    bound.arrival = {"edits": "~gone"}
     loading.show_rig(bound, arm_rig())
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     assert "no longer has them" in bound.state.message[1]
 
 
@@ -252,34 +264,33 @@ def test_they_are_saved_and_opened(bound, loop, monkeypatch):
     correct.save(bound)
     correct.clear(bound)
     ((name, content),) = offered
-    assert name == "arm.corrections.json"
+    assert name == "arm.layers.json"
     correct.open_text(bound, content.decode())
-    assert bound.state.corrections == ALL
+    assert bound.state.edits == ALL
     settled(bound, loop)
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
 
 
-def test_going_back_to_a_character_brings_its_corrections(session, loop):
+def test_going_back_to_a_character_brings_its_edits(session, loop):
     session.state.resolution = 16
     arrival.arrive(session, "?rig=robot&resolution=16", lambda: None)
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
     correct.correct_joint(session, 3, deform=False)
-    loop.run_until(lambda: not session.tasks.running)
-    robot = session.state.corrections
+    loop.rest(session)
+    robot = session.state.edits
     loading.load_demo(session, "robot")
-    loop.run_until(lambda: not session.tasks.running)
-    assert not session.state.corrections
+    loop.rest(session)
+    assert not session.state.edits
     keys.act(session, "undo")
-    loop.run_until(lambda: not session.tasks.running)
-    assert session.state.corrections == robot
+    loop.rest(session)
+    assert session.state.edits == robot
     assert not session.state.rig.skeleton.deform[3]
 
 
 def test_the_tree_and_what_stands_below_it(bound, loop):
-    section = joints(bound)
+    section = draw(bound, JOINTS)
     (tree,) = section.select(JointTree)
-    loop.run_until(lambda: not bound.tasks.running)
-    loop.run_for(0.1)
+    loop.rest(bound)
     assert [(row["name"], row["level"]) for row in tree.rows] == [
         ("shoulder", 0), ("elbow", 1), ("wrist", 2),
     ]  # fmt: skip
@@ -290,7 +301,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert bound.state.joint == tree.chosen == 2
     carries, locked, *_ = section.select(pmui.Switch)
     carries.value = False
-    loop.run_for(0.05)
+    loop.rest(bound)
     assert not tree.rows[2]["carries"]
     tree._handle_msg({"type": "carry", "joint": 2, "on": True})
     assert carries.value
@@ -299,21 +310,39 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     gain.value = 1.0
     _, radius, *_ = section.select(pmui.TextInput)
     radius.value = "0.25"
-    expected = {"wrist": JointCorrection(locked=True, gain=2.0, radius=0.25)}
-    assert bound.state.corrections.joints == expected
+    reach = Layer(Computed(gain={"wrist": 2.0}, radius={"wrist": 0.25}), name="Reach of joints")
+    expected = Edits(layers=[reach, Layer(Locked(["wrist"]))])
+    assert bound.state.edits == expected
     settled(bound, loop)
-    the_same_as_bind(bound)
+    check_bound_as_by_core(bound, arm_rig())
     bound.state.joint = 0
     assert (locked.value, gain.value, radius.value) == (False, 0.0, "")
-    assert bound.state.corrections.joints == expected
+    assert bound.state.edits == expected
     bound.state.joint = 2
     radius.value = "wide"
     assert "Radius must be a number" in bound.state.message[1]
     assert radius.value == "0.25"
     next(b for b in section.select(pmui.Button) if b.label == "Reset").clicks += 1
-    assert not bound.state.corrections
-    restore(bound, {"corrections": ALL})
+    assert not bound.state.edits
+    restore(bound, {"edits": ALL})
     assert gain.value == 0.0
+
+
+def test_doubtful_joints_of_a_character_without_weights_are_marked_with_a_reason():
+    rig = arm_rig()
+    skeleton = replace(rig.skeleton, names=("shoulder", "IK", "wrist"))
+    guess = deform_joints(rig.mesh, skeleton)
+    rows = {}
+    for weights in (None, rig.weights):
+        state = SimpleNamespace(
+            rig=replace(rig, skeleton=skeleton, weights=weights),
+            binding=None,
+            edits=Edits(),
+        )
+        rows[weights is None] = joint_rows(state, lambda name, on, make: make(), guess)
+    assert [row["doubtful"] for row in rows[True]] == [False, True, False]
+    assert rows[True][1]["why"] == "control or bone, by its name"
+    assert not any(row["doubtful"] for row in rows[False])
 
 
 def test_a_guess_that_arrives_after_another_character_was_opened_is_dropped(
@@ -321,19 +350,19 @@ def test_a_guess_that_arrives_after_another_character_was_opened_is_dropped(
 ):
     waiting = []
     monkeypatch.setattr(correct, "guess", lambda session, done: waiting.append(done))
-    section = joints(bound)
+    section = draw(bound, JOINTS)
     (tree,) = section.select(JointTree)
     arm = bound.state.rig
     late = deform_joints(arm.mesh, arm.skeleton)
     detect = next(b for b in section.select(pmui.Button) if b.label == "Detect deforming joints")
     detect.clicks += 1
     loading.load_demo(bound, "robot")
-    loop.run_until(lambda: len(waiting) == 3 and not bound.tasks.running)
+    loop.run_until(lambda: len(waiting) == 3 and not bound.work.busy)
     of_the_arm, by_the_button, _ = waiting
     of_the_arm(late)
     by_the_button(late)
     assert len(tree.rows) == len(bound.state.rig.skeleton.joints)
-    assert not bound.state.corrections
+    assert not bound.state.edits
 
 
 def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
@@ -348,12 +377,12 @@ def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
     assert facts["overruled"]
     assert [bone["weight"] for bone in facts["offered"]][:3] == [0.75, 0.25, 0]
     settled(bound, loop)
-    told = vertex_facts(bound.state, bound.memo)["why"]
-    assert told[0]["steps"][-1] == ["corrected", 0.75]
+    reports = vertex_facts(bound.state, bound.memo)["why"]
+    assert reports[0]["steps"][-1] == ["Painted", 0.75]
     correct.overrule(bound, 7, {0: 0.0})
     assert "needs a weight above 0" in bound.state.message[1]
     correct.overrule(bound, 7, None)
-    assert not bound.state.corrections
+    assert not bound.state.edits
     np.testing.assert_allclose(bound.state.binding.weights[7], computed)
 
 
@@ -365,9 +394,8 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     faces = np.concatenate([rig.mesh.faces, button.faces + first])
     session.state.resolution = 16
     loading.show_rig(session, cutcell.Rig(TriangleMesh(vertices, faces), rig.skeleton))
-    section = parts_of_mesh(session)
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
-    loop.run_for(0.05)
+    section = draw(session, COMPONENTS)
+    loop.rest(session)
     (rows,) = section.select(Rows)
     way, glue = section.select(pmui.Select)
     assert [row[0] for row in rows.rows] == [
@@ -375,43 +403,42 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 2 · {len(vertices) - first}",
     ]
     rows._handle_msg({"row": 0})
-    loop.run_for(0.05)
-    assert "touching" not in way.options.values(), "the body cannot follow itself"
+    loop.rest(session)
+    assert "attached" not in way.options.values(), "the body cannot follow itself"
     rows._handle_msg({"row": 1})
-    loop.run_for(0.05)
-    assert "touching" in way.options.values()
+    loop.rest(session)
+    assert "attached" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
     scene = resolve(session.state)
     assert len(scene.actors["part"].cells) == len(button.faces)
     assert scene.actors["body"].opacity < 0.5
-    way.value = "glued"
-    loop.run_until(lambda: not session.tasks.running)
-    loop.run_for(0.05)
+    way.value = "filled"
+    loop.rest(session)
     assert glue.value == "shoulder"
     glue.value = "wrist"
-    loop.run_for(0.05)
+    loop.rest(session)
     assert (session.state.binding.weights[first:, 2] == 1).all()
     assert rows.rows[1][1] == "rigid: wrist"
-    way.value = "itself"
-    loop.run_until(lambda: not session.tasks.running)
-    parts = {first: PartCorrection("itself")}
-    assert session.state.corrections == Corrections(parts=parts)
-    fresh = cutcell.bind(session.state.rig, 16, corrections=session.state.corrections)
+    way.value = "computed"
+    loop.rest(session)
+    layer = Layer(Computed(as_skin=True), Mask(part=first))
+    assert session.state.edits == Edits(layers=[layer])
+    fresh = cutcell.bind(session.state.rig, 16, edits=session.state.edits)
     np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
     way.value = ""
-    assert not session.state.corrections
+    assert not session.state.edits
     rows._handle_msg({"row": 1})
     assert session.state.part is None
 
 
-def test_a_step_of_the_tour_shows_what_it_speaks_of_uncorrected(session, loop):
+def test_a_step_of_the_lesson_shows_what_it_speaks_of_uncorrected(session, loop):
     session.state.resolution = 16
-    loading.load_demo(session, TOUR[1].look.demo)
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loading.load_demo(session, session.state.lesson[1].demo)
+    loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
     correct.correct_joint(session, 3, deform=False)
-    tour.go(session, 1)
-    loop.run_until(lambda: not session.tasks.running)
-    assert not session.state.corrections
+    lesson.go(session, 1)
+    loop.rest(session)
+    assert not session.state.edits
     assert session.state.rig.skeleton.deform[3]
 
 
@@ -423,7 +450,7 @@ def test_tools_are_put_down_for_another_character(bound):
 
 
 def test_a_coordinate_that_is_rounding_noise_is_shown_as_zero(bound):
-    section = joints(bound)
+    section = draw(bound, JOINTS)
     joint = bound.state.rig.skeleton.joints[2].tolist()
     bound.state.joint = 2
     moving.put(bound, [3.55e-15, *joint[1:]])

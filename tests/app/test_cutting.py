@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cutcell_app.commands import cutting
-from cutcell_app.scenes.common import bounds_of, cut_of
+from cutcell_app.features.character import bounds_of, cut_of
+from cutcell_app.features.cut import commands as cutting
 from cutcell_viewers.camera import Camera
 
 

@@ -1,5 +1,6 @@
 """The panel Check without a browser: findings, where they are, repairs, captions."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -7,22 +8,25 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell import Corrections, JointCorrection
+from cutcell import Edits, Filled, Layer, Locked, Mask
 from cutcell.diagnosis import Diagnosis, Finding
 from cutcell.diagnosis.repair import WEIGHTS
+from cutcell.errors import LocatedWarning
 from cutcell.rig import TriangleMesh
-from cutcell_app.commands import loading
-from cutcell_app.commands.binding import is_current
-from cutcell_app.commands.check import look_at, repair, take_back
-from cutcell_app.commands.correct import choose_file, uses_file
-from cutcell_app.commands.export import export_bound
-from cutcell_app.panels.character import faults
-from cutcell_app.panels.check import check, summary
-from cutcell_app.panels.export import changes_of
-from cutcell_app.scenes import resolve
-from cutcell_app.scenes.common import bounds_of
-from cutcell_app.state import State
-from cutcell_app.state.check import EXPORT
+from cutcell_app.document import loading
+from cutcell_app.document.state import State
+from cutcell_app.features.character import bounds_of
+from cutcell_app.features.check.choices import EXPORT
+from cutcell_app.features.check.controls import CONTROLS, summary
+from cutcell_app.features.check.results import go_to, look_at, repair, take_back
+from cutcell_app.features.correct.commands import choose_file, uses_file
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.weights.recovery import is_current
+from cutcell_app.shell.character import faults
+from cutcell_app.shell.export import export_bound
+from cutcell_app.shell.export_controls import changes_of
+from cutcell_app.shell.warnings import warnings
+from cutcell_app.widgets.controls import draw
 from cutcell_viewers.camera import sees
 from cutcell_viewers.finding_scene import finding_marks
 from tests.app.test_bare import bare_arm
@@ -56,13 +60,18 @@ def codes(session):
 
 def texts(session):
     """Return all that the panel says."""
-    found, todo = [], [check(session)]
+    return texts_of(session, CONTROLS)
+
+
+def texts_of(session, controls):
+    """Return all that some controls say."""
+    result, todo = [], [draw(session, controls)]
     while todo:
         one = todo.pop()
         todo += list(getattr(one, "objects", []))
-        found += [text for text in (getattr(one, "object", None), getattr(one, "label", None))
+        result += [text for text in (getattr(one, "object", None), getattr(one, "label", None))
                   if isinstance(text, str)]  # fmt: skip
-    return "\n".join(found)
+    return "\n".join(result)
 
 
 def test_what_is_bound_is_diagnosed(spoiled):
@@ -71,6 +80,32 @@ def test_what_is_bound_is_diagnosed(spoiled):
     assert "Vertices without weight" in texts(spoiled)
     assert "Repair all 2 findings" in texts(spoiled)
     assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
+
+
+def test_warnings_lead_to_the_findings_that_show_their_elements(bound, loop):
+    rig = bound.state.rig
+    warning = LocatedWarning("3 faces are wrong", "inverted-faces")
+    bound.state.rig = replace(rig, warnings=("no joint is called so", warning))
+    links = warnings(bound.state)[:2]
+    assert [link.code for link in links] == ["", "inverted-faces"]
+    assert [link.label for link in links] == ["", "Show: inverted faces"]
+    turned = replace(rig.mesh, faces=rig.mesh.faces[:, ::-1])
+    codes = {warning.code for warning in cutcell.bind(replace(rig, mesh=turned), 16).warnings}
+    assert "inverted-faces" in codes
+    assert pickle.loads(pickle.dumps(warning)).code == warning.code
+
+
+def test_a_warning_about_new_weights_leads_to_them_and_not_to_those_of_the_file(bound, loop):
+    warning = LocatedWarning("it stretches", "stretched-surface")
+    vertices, joints = bound.state.binding.weights.shape
+    weights = np.eye(joints)[np.arange(vertices) % joints]
+    bound.state.binding = replace(bound.state.binding, weights=weights, warnings=(warning,))
+    link = warnings(bound.state)[-1]
+    assert link.label == "Show: surface that stretches"
+    go_to(bound, link.code)
+    bound.engine.update()
+    loop.run_until(lambda: bound.state.selected_finding is not None)
+    assert bound.state.selected_finding is bound.state.export_diagnosis["stretched-surface"]
 
 
 def test_a_sound_character_is_said_to_be_sound(bound, loop):
@@ -144,8 +179,8 @@ def test_joints_and_vertices_get_beads():
     rig = arm_rig()
     weights = rig.weights.copy()
     weights[4] = 0
-    found = cutcell.diagnose(replace(rig, weights=weights), 16)["unweighted-vertices"]
-    marks = finding_marks(rig, replace(found, joints=np.array([1])))
+    result = cutcell.diagnose(replace(rig, weights=weights), 16)["unweighted-vertices"]
+    marks = finding_marks(rig, replace(result, joints=np.array([1])))
     assert set(marks) == {"finding vertices", "finding joints"}
     for mark in marks.values():
         middle = mark.points.mean(axis=0)
@@ -162,6 +197,7 @@ def test_the_weights_of_the_export_are_checked(spoiled, loop):
     weights = state.binding.weights.copy()
     weights[:5] = 0
     state.binding = replace(state.binding, weights=weights)
+    spoiled.engine.update()
     loop.run_until(lambda: state.export_diagnosis.findings)
     look_at(spoiled, EXPORT + "unweighted-vertices")
     assert state.selected_finding.vertices.tolist() == list(range(5))
@@ -181,14 +217,14 @@ def test_joints_that_lead_a_part_are_locked_not_excluded(bound, loop):
     bound.state.rig = rig.with_weights(weights)
     finding = Finding("stray-weights", "warning", "", "", joints=np.array([control, eye]))
     bound.state.param.update(diagnosis=Diagnosis(rig, (finding,)), finding=finding.code)
-    buttons = {button.label: button for button in check(bound).select(pmui.Button)}
+    buttons = {button.label: button for button in draw(bound, CONTROLS).select(pmui.Button)}
     next(b for label, b in buttons.items() if "Exclude elbow" in label)
     next(b for label, b in buttons.items() if "Lock wrist" in label).clicks += 1
-    assert bound.state.corrections == Corrections(joints={"wrist": JointCorrection(locked=True)})
+    assert bound.state.edits == Edits(layers=[Layer(Locked(["wrist"]))])
 
 
 def labels(session):
-    return {button.label: button for button in check(session).select(pmui.Button)}
+    return {button.label: button for button in draw(session, CONTROLS).select(pmui.Button)}
 
 
 def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypatch):
@@ -217,10 +253,10 @@ def test_the_files_weights_are_not_offered_where_they_are(bound, loop):
     finding = Finding("weight-islands", "warning", "", "", vertices=np.arange(5))
     shown = {"export_diagnosis": Diagnosis(state.rig, (finding,)), "panel": "check"}
     state.param.update(**shown, finding=EXPORT + finding.code)
-    assert "Use the file's weights there" in labels(bound)
+    assert "Take from file here" in labels(bound)
     state.binding = replace(state.binding, weights=weights)
     state.param.update(**shown, finding=EXPORT + finding.code)
-    assert "Use the file's weights there" not in labels(bound)
+    assert "Take from file here" not in labels(bound)
 
 
 def test_a_part_that_follows_a_far_joint_can_be_made_rigid(bound, loop):
@@ -229,5 +265,5 @@ def test_a_part_that_follows_a_far_joint_can_be_made_rigid(bound, loop):
     finding = Finding("far-parts", "warning", "", "", vertices=np.arange(5), parts=((0, 2),))
     state.param.update(diagnosis=Diagnosis(state.rig, (finding,)), finding=finding.code)
     labels(bound)["Rigid to wrist"].clicks += 1
-    (part,) = state.corrections.parts.values()
-    assert (part.how, part.joint) == ("glued", "wrist")
+    (layer,) = state.edits.layers
+    assert layer == Layer(Filled({"wrist": 1.0}), Mask(part=0))

@@ -15,10 +15,12 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.editing.corrections import Corrections
-from cutcell.runtime.progress import silent
-from cutcell_app.commands import binding, loading
-from cutcell_app.commands.export import (
+from cutcell_app.derive import jobs
+from cutcell_app.derive.work import Work
+from cutcell_app.document import loading
+from cutcell_app.document.state import PANELS, State
+from cutcell_app.features.weights import recovery as binding
+from cutcell_app.shell.export import (
     export_bound,
     export_interactive,
     export_motion,
@@ -27,10 +29,7 @@ from cutcell_app.commands.export import (
     export_sweep,
     export_turntable,
 )
-from cutcell_app.jobs import jobs
-from cutcell_app.jobs.jobs import Jobs
-from cutcell_app.panels.export import _described, page
-from cutcell_app.state import PANELS
+from cutcell_app.shell.export_controls import _described, page
 from tests.cutcell.io.gltf.gltf_builder import COLUMN
 from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
 
@@ -105,8 +104,8 @@ def taken(loop, act, *arguments):
 
 @pytest.fixture
 def small(monkeypatch):
-    monkeypatch.setattr("cutcell_app.commands.export.PICTURE_PIXELS", 160 * 120)
-    monkeypatch.setattr("cutcell_app.commands.export.FILM_PIXELS", 64 * 48)
+    monkeypatch.setattr("cutcell_app.shell.export.PICTURE_PIXELS", 160 * 120)
+    monkeypatch.setattr("cutcell_app.shell.export.FILM_PIXELS", 64 * 48)
 
 
 @pytest.fixture
@@ -118,7 +117,7 @@ def orders(monkeypatch):
         orders.append(order)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr("cutcell_app.commands.export.draw_apart", remember)
+    monkeypatch.setattr("cutcell_app.shell.export.draw_isolated", remember)
     return orders
 
 
@@ -187,7 +186,7 @@ def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
     assert bound.state.busy
     binding.cancel(bound)
     assert not bound.state.busy
-    loop.run_for(0.5)
+    loop.run_out()
     assert got == []
 
 
@@ -200,8 +199,8 @@ def killed(*given):
 
 
 WRITERS = {
-    "file": ("cutcell_app.commands.export.save_bound", export_bound),
-    "numbers": ("cutcell_app.commands.export.save_numbers", partial(export_numbers, what="all")),
+    "file": ("cutcell_app.shell.export.save_bound", export_bound),
+    "numbers": ("cutcell_app.shell.export.save_numbers", partial(export_numbers, what="all")),
 }
 
 
@@ -217,13 +216,13 @@ def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypat
     binding.cancel(bound)
     assert not bound.state.busy
     got: list = []
-    Jobs(loop).start(lambda progress: "computed", got.append, got.append, silent)
+    Work(loop, got.append).start("other", lambda progress: "computed", got.append)
     loop.run_until(lambda: got == ["computed"])
     assert list(bound.folder.iterdir()) == []
 
 
 def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
-    monkeypatch.setattr("cutcell_app.commands.export.save_bound", killed)
+    monkeypatch.setattr("cutcell_app.shell.export.save_bound", killed)
     export_bound(bound, lambda name, content: pytest.fail("it crashed"))
     loop.run_until(lambda: not bound.state.busy)
     assert "Writing it came to a sudden end" in bound.state.message[1]
@@ -285,8 +284,8 @@ def test_numbers_that_are_not_there_yet_are_told(session):
 
 def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
     got = []
-    monkeypatch.setattr("cutcell_viewers.worker.sys.executable", "false")
-    monkeypatch.setattr("cutcell_viewers.opengl._can_draw", lambda: False)
+    monkeypatch.setattr("cutcell_viewers.process.sys.executable", "false")
+    monkeypatch.setattr("cutcell_viewers.process._can_draw", lambda: False)
     export_picture(bound, lambda name, content: got.append(name))
     loop.run_until(lambda: bound.state.message is not None)
     assert "no OpenGL" in bound.state.message[1]
@@ -296,7 +295,7 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
 
 def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
     def said(path):
-        return _described(cutcell.load(path), Corrections(), None)
+        return _described(State(rig=cutcell.load(path)))
 
     assert "Only weights" in said(demo_paths[0])
     path = tmp_path / "column.obj"

@@ -14,8 +14,13 @@ import pytest
 import cutcell
 from cutcell.editing import bind
 from cutcell.errors import MeshError
-from cutcell_app.commands import binding, check, correct, export, loading
-from cutcell_app.panels.export import page
+from cutcell_app.document import loading
+from cutcell_app.features.check import results as check
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.features.weights import recovery as binding
+from cutcell_app.features.weights import results
+from cutcell_app.shell import export
+from cutcell_app.shell.export_controls import page
 from tests.viewers.arm import arm_rig
 
 
@@ -38,11 +43,12 @@ def slow(bound, monkeypatch):
     """Let bindings wait at a gate."""
     gate = Gate()
 
-    def late(rig, progress, **method):
-        gate.wait(progress)
-        return bind(rig, progress=progress, **method)
+    def late(*inputs):
+        gate.wait(inputs[-1])
+        return real(*inputs)
 
-    monkeypatch.setattr(cutcell, "bind", late)
+    real = results.bind_wide
+    monkeypatch.setattr(results, "bind_wide", late)
     yield gate
     gate.open.set()
 
@@ -50,7 +56,7 @@ def slow(bound, monkeypatch):
 def bound_with(session, resolution):
     """Return the weights that the page's settings mean."""
     state = session.state
-    return bind(state.rig, resolution, corrections=state.corrections).weights
+    return bind(state.rig, resolution, edits=state.edits).weights
 
 
 def read(tmp_path, content):
@@ -119,7 +125,7 @@ def test_a_choice_changed_while_an_export_waits_counts(bound, slow, loop, tmp_pa
     slow.open.set()
     loop.run_until(lambda: files)
     assert read(tmp_path, files[0][1])[1]["resolution"] == 20
-    loop.run_for(0.3)
+    loop.rest(bound)
     assert len(files) == 1
 
 
@@ -139,7 +145,7 @@ def test_a_slider_stops_no_export_and_no_export_stops_another(bound, loop, monke
         gate.wait(progress)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr(export, "draw_apart", drawn)
+    monkeypatch.setattr(export, "draw_isolated", drawn)
     export.export_turntable(bound, "gif", lambda *file: files.append(file))
     loop.run_until(lambda: bound.state.stage == "drawing the film")
     export.export_bound(bound, lambda *file: files.append(file))
@@ -161,7 +167,7 @@ def test_a_film_goes_on_while_another_character_is_opened(bound, loop, monkeypat
         gate.wait(progress)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr(export, "draw_apart", drawn)
+    monkeypatch.setattr(export, "draw_isolated", drawn)
     export.export_turntable(bound, "gif", lambda *file: files.append(file))
     loop.run_until(lambda: bound.state.stage == "drawing the film")
     loading.show_rig(bound, arm_rig())
@@ -185,8 +191,7 @@ def test_where_no_weights_come_nothing_is_exported_and_that_is_said(bound, slow,
         slow.open.set()
     loop.run_until(lambda: bound.state.message is not None)
     assert "othing was exported" in bound.state.message[1]
-    loop.run_until(lambda: not bound.state.busy)
-    loop.run_for(0.4)
+    loop.rest(bound)
     if how != "another":
         assert bound.state.resolution == 16, "what is chosen is what is there"
 
@@ -218,12 +223,11 @@ def test_cancelled_weights_of_another_falloff_choose_the_one_that_is_there(
 ):
     gate = Gate()
 
-    def late(now, **few):
+    def late(*inputs):
         gate.open.wait(60)
-        return bound.state.binding.weights
+        return bound.state.bound
 
-    monkeypatch.setattr(binding, "_weights", late)
-    monkeypatch.setattr(binding, "QUICK", ())
+    monkeypatch.setattr(results, "bind_wide", late)
     before = bound.state.falloff
     bound.state.falloff = "paper"
     assert bound.state.busy

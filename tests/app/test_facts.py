@@ -10,12 +10,12 @@ import pytest
 import cutcell
 from cutcell.graph.winding import winding_number as cutcell_winding
 from cutcell.rig import TriangleMesh
-from cutcell_app.commands.compare import Compared
+from cutcell_app.document.state import State
+from cutcell_app.features.compare.results import Compared
+from cutcell_app.features.compare.scene import title_of
+from cutcell_app.features.scenes import Memo
+from cutcell_app.features.weights.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.files.graph_numbers import save_graph
-from cutcell_app.scenes import Memo
-from cutcell_app.scenes.compare import title_of
-from cutcell_app.scenes.facts import NO_WEIGHT, components, node_facts, vertex_facts
-from cutcell_app.state import State
 
 
 def facts(rig, binding, vertex):
@@ -32,26 +32,26 @@ def test_before_anything_is_computed_only_the_vertex_is_known(rig):
 
 
 def test_weights_and_distances_are_those_of_the_vertex(rig, binding):
-    found = facts(rig, binding, 7)
-    ours = {bone["joint"]: bone["ours"] for bone in found["weights"]}
+    result = facts(rig, binding, 7)
+    computed = {bone["joint"]: bone["ours"] for bone in result["weights"]}
     held = dict(enumerate(binding.weights[7]))
-    assert ours == {j: w for j, w in held.items() if max(w, rig.weights[7, j]) > NO_WEIGHT}
-    shown = [max(bone["ours"], bone["artist"]) for bone in found["weights"]]
+    assert computed == {j: w for j, w in held.items() if max(w, rig.weights[7, j]) > NO_WEIGHT}
+    shown = [max(bone["ours"], bone["artist"]) for bone in result["weights"]]
     assert shown == sorted(shown, reverse=True)
-    assert sum(bone["artist"] for bone in found["weights"]) == pytest.approx(1)
-    distances = [bone["distance"] for bone in found["distances"]]
+    assert sum(bone["artist"] for bone in result["weights"]) == pytest.approx(1)
+    distances = [bone["distance"] for bone in result["distances"]]
     size = np.ptp(rig.mesh.bounds, axis=0).max()
     assert size != pytest.approx(1)
     np.testing.assert_allclose(distances, np.sort(binding.distances.joint[:, 7]) * size)
-    assert found["distances"][0]["name"] in rig.skeleton.names
-    assert found["reached"]
-    assert found["component"] == {"number": 1, "of": 1, "vertices": len(rig.mesh.vertices)}
+    assert result["distances"][0]["name"] in rig.skeleton.names
+    assert result["reached"]
+    assert result["component"] == {"number": 1, "of": 1, "vertices": len(rig.mesh.vertices)}
 
 
 def test_a_file_without_weights_has_none_to_compare(rig, binding):
-    found = facts(replace(rig, weights=None), binding, 7)
-    assert not found["artist"]
-    assert all(bone["artist"] == 0 for bone in found["weights"])
+    result = facts(replace(rig, weights=None), binding, 7)
+    assert not result["artist"]
+    assert all(bone["artist"] == 0 for bone in result["weights"])
 
 
 def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
@@ -63,10 +63,10 @@ def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
     mesh = TriangleMesh(np.concatenate([vertices, apart]), faces)
     both = replace(rig, mesh=mesh, weights=None, clips=(), attachments=())
     binding = cutcell.bind(both, 16)
-    found = facts(both, binding, len(vertices))
-    assert found["component"] == {"number": 2, "of": 2, "vertices": 4}
-    assert not found["reached"]
-    assert "no path through the body" in found["reason"]
+    result = facts(both, binding, len(vertices))
+    assert result["component"] == {"number": 2, "of": 2, "vertices": 4}
+    assert not result["reached"]
+    assert "no path through the body" in result["reason"]
     which, sizes = components(binding.graph)
     assert sizes.tolist() == [len(vertices), 4]
     assert (which == np.repeat([0, 1], sizes)).all()
@@ -78,20 +78,20 @@ def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
     assert node_facts(state, Memo()) is None
     for kind, name in enumerate(("mesh", "interior", "surface")):
         state.node = node = int(np.flatnonzero((graph.node_kind == kind) & graph.connected)[0])
-        found = node_facts(state, Memo())
-        assert (found["node"], found["kind"]) == (node, name)
+        result = node_facts(state, Memo())
+        assert (result["node"], result["kind"]) == (node, name)
         place = graph.lattice.to_file(graph.nodes[[node]])
-        np.testing.assert_allclose([found["position"]], place)
-        assert found["winding"] == pytest.approx(cutcell_winding(rig.mesh, place)[0])
+        np.testing.assert_allclose([result["position"]], place)
+        assert result["winding"] == pytest.approx(cutcell_winding(rig.mesh, place)[0])
         row = graph.csr()[[node]].tocoo()
-        told = {other["node"]: other["length"] for other in found["neighbours"]}
-        assert found["degree"] == len(row.col)
-        assert set(told) <= set(row.col.tolist())
+        reports = {other["node"]: other["length"] for other in result["neighbours"]}
+        assert result["degree"] == len(row.col)
+        assert set(reports) <= set(row.col.tolist())
         if kind == 2:
             face = graph.triangle[node]
-            assert found["triangle"] == [face, *rig.mesh.faces[face]]
+            assert result["triangle"] == [face, *rig.mesh.faces[face]]
         else:
-            assert found["triangle"] is None
+            assert result["triangle"] is None
     state.panel = "weights"
     assert node_facts(state, Memo()) is None
 
@@ -124,21 +124,21 @@ def test_beside_other_methods_the_card_shows_the_clicked_ones_weights(rig, bindi
     state = State(
         rig=rig, binding=binding, vertex=7, panel="compare", methods=["now", "artist", "euclidean"]
     )
-    state.compared = {"euclidean": Compared(rig, other)}
+    state.compared = {"euclidean": Compared(other)}
     state.clicked_method = "euclidean"
-    found = vertex_facts(state, Memo())
-    assert found["method"] == title_of("euclidean")
-    assert {bone["joint"]: bone["ours"] for bone in found["weights"]}[2] == 1
-    assert not {"distances", "why", "reached"} & set(found), "these are of the page's own binding"
+    result = vertex_facts(state, Memo())
+    assert result["method"] == title_of("euclidean")
+    assert {bone["joint"]: bone["ours"] for bone in result["weights"]}[2] == 1
+    assert not {"distances", "why", "reached"} & set(result), "these are of the page's own binding"
     state.clicked_method = "artist"
-    found = vertex_facts(state, Memo())
-    assert found["method"] == "From file"
-    shown = {bone["joint"]: bone["ours"] for bone in found["weights"]}
+    result = vertex_facts(state, Memo())
+    assert result["method"] == "From file"
+    shown = {bone["joint"]: bone["ours"] for bone in result["weights"]}
     assert shown == {j: rig.weights[7, j] for j in shown}
     state.clicked_method = "now"
-    found = vertex_facts(state, Memo())
-    assert found["method"] == title_of("now")
-    assert found["distances"]
+    result = vertex_facts(state, Memo())
+    assert result["method"] == title_of("now")
+    assert result["distances"]
     state.methods = ["now", "voxel"]
     state.clicked_method = "voxel"
     assert vertex_facts(state, Memo()) == {

@@ -11,9 +11,10 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from benchmarks.visitors import Visitor
-from cutcell_app.commands.session import Session
+from cutcell_app.document.session import Session
 from cutcell_app.server import handlers
 from cutcell_app.widgets.modules import ADDRESS, FOLDER
+from tests.app.loop import wait_until
 from tests.app.serving import serving
 
 pytestmark = pytest.mark.slow
@@ -67,17 +68,10 @@ def upgrade(here, origin=None, token=None, host=None):
         return int(raw.recv(100).split()[1])
 
 
-def wait_until(condition, seconds=120):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not come about in time"
-        time.sleep(0.05)
-
-
 def listening(port):
     """Return the addresses on which this process listens at a port."""
-    found = psutil.Process().net_connections("inet")
-    return {one.laddr.ip for one in found if one.laddr.port == port and one.status == "LISTEN"}
+    result = psutil.Process().net_connections("inet")
+    return {one.laddr.ip for one in result if one.laddr.port == port and one.status == "LISTEN"}
 
 
 def test_it_listens_to_this_machine_only(here):
@@ -159,7 +153,7 @@ def test_whoever_only_asks_for_the_page_begins_no_session(here, begun):
 def test_each_visitor_gets_a_token_of_their_own(here):
     texts = [get(here).text for _ in range(2)]
     tokens = [re.findall(r'"token":"([^"]+)"', text.replace("&quot;", '"')) for text in texts]
-    assert all(len(found) == 1 for found in tokens)
+    assert all(len(result) == 1 for result in tokens)
     assert tokens[0] != tokens[1]
     assert handlers.TOKEN not in texts[0]
 
@@ -170,7 +164,7 @@ def test_nothing_is_computed_before_a_browser_has_the_view(here, begun, monkeypa
     wait_until(lambda: begun)
     session = begun[-1]
     time.sleep(0.5)
-    assert not session.tasks.running
+    assert not session.work.busy
     assert session.state.rig is None
     assert session.state.panel == "graph", "what the address says is chosen"
     monkeypatch.undo()
@@ -196,7 +190,7 @@ def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monke
     assert len(here.sessions) == 2
     answer = get(here)
     assert answer.status == 503
-    assert "pages of this server are open" in answer.text
+    assert "open pages is reached" in answer.text
     assert get(here, method="HEAD").status == 503
     assert upgrade(here, here.address) == 503
     visitors[0].close()
@@ -216,7 +210,22 @@ def test_one_client_cannot_fill_the_server(here, monkeypatch):
 
 
 def test_no_other_site_can_frame_the_page(here):
-    assert "frame-ancestors 'self'" in get(here).getheader("Content-Security-Policy")
+    answer = get(here)
+    assert answer.getheader("Content-Security-Policy") == "frame-ancestors 'self'"
+    assert answer.getheader("X-Frame-Options") == "SAMEORIGIN"
+
+
+def test_allowed_origins_can_frame_the_page_but_open_no_websocket(monkeypatch):
+    allowed = ("https://course.example", "http://localhost:8000")
+    with serving(frames=allowed) as here:
+        answer = get(here)
+        policy = "frame-ancestors 'self' https://course.example http://localhost:8000"
+        assert answer.getheader("Content-Security-Policy") == policy
+        assert answer.getheader("X-Frame-Options") is None
+        assert upgrade(here, here.address) == 101, "the page in the frame has its own origin"
+        assert [upgrade(here, origin) for origin in allowed] == [403, 403]
+        monkeypatch.setattr(handlers, "MAX_SESSIONS", 0)
+        assert get(here).getheader("Content-Security-Policy") == policy, "the frame says why"
 
 
 def test_a_large_body_is_refused(here):

@@ -6,17 +6,19 @@ import pytest
 
 import cutcell
 from cutcell.rig import TriangleMesh
-from cutcell_app.commands import arrival, correct, keys, loading
-from cutcell_app.commands.arrival import GONE
-from cutcell_app.commands.check import repair
-from cutcell_app.commands.compare import choose
-from cutcell_app.jobs.jobs import Gate
-from cutcell_app.layout.session import begin
-from cutcell_app.scenes.common import first_joint
-from cutcell_app.state import State
-from cutcell_app.state.compare import standard
-from cutcell_app.state.history import TOGETHER, History
-from cutcell_app.state.url import first_clip, from_query, to_query
+from cutcell_app.derive.jobs import Gate
+from cutcell_app.document import arrival, loading
+from cutcell_app.document.address import first_clip, from_query, to_query
+from cutcell_app.document.arrival import GONE
+from cutcell_app.document.history import TOGETHER, History
+from cutcell_app.document.state import State
+from cutcell_app.features.character import first_joint
+from cutcell_app.features.check.results import repair
+from cutcell_app.features.compare.choices import standard
+from cutcell_app.features.compare.results import choose
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.shell import keys
+from cutcell_app.shell.begin import begin
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 
@@ -226,15 +228,15 @@ def test_keys(session, loop):
 def test_the_choice_of_joints_that_deform_can_be_undone(bound, loop):
     before = bound.state.rig
     correct.choose_deform(bound, [0, 1])
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     assert bound.state.binding.weights[:, 2].max() == 0
     keys.act(bound, "undo")
     assert bound.state.rig is before
     assert bound.view.last_sent("able") == [False, True]
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     assert bound.state.binding.weights[:, 2].max() > 0
     keys.act(bound, "redo")
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     assert bound.state.binding.weights[:, 2].max() == 0
     assert bound.view.last_sent("able") == [True, False]
 
@@ -249,13 +251,13 @@ def test_a_repair_can_be_undone(session, loop):
     loop.run_until(lambda: session.state.diagnosis is not None)
     code = next(finding.code for finding in session.state.diagnosis.findings if finding.repair)
     repair(session, [code])
-    loop.run_until(lambda: session.state.rig is not spoiled and not session.tasks.running)
+    loop.run_until(lambda: session.state.rig is not spoiled and not session.work.busy)
     repaired, done = session.state.rig, session.state.repair
     keys.act(session, "undo")
     assert (session.state.rig, session.state.repair) == (spoiled, None)
     assert not session.history.can_undo
-    loop.run_until(lambda: not session.tasks.running)
+    loop.rest(session)
     keys.act(session, "redo")
     assert (session.state.rig, session.state.repair) == (repaired, done)
-    loop.run_until(lambda: not session.tasks.running)
+    loop.rest(session)
     assert session.state.binding is not None

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from cutcell_app.jobs.jobs import MAX_UNRESPONSIVE, Gate, Jobs, Newest, on_its_thread
+from cutcell_app.derive.jobs import MAX_UNRESPONSIVE, Gate, on_its_thread
+from cutcell_app.derive.work import Work
 
 LESS = 0.2
 """Seconds of patience in a test."""
@@ -17,21 +18,29 @@ def told():
     return []
 
 
+def begin(work, action, told, report=lambda stage, fraction: None):
+    """Start some work of one name, of which results are told."""
+    work.start("work", action, told.append, report=report)
+
+
 @pytest.fixture
 def start(loop, told):
-    jobs = Jobs(loop)
+    def fail(error):
+        told.append(("failed", error, threading.current_thread()))
 
-    def begin(work):
-        return jobs.start(
-            work,
+    work = Work(loop, fail)
+
+    def start(action):
+        work.start(
+            "work",
+            action,
             lambda result: told.append(("done", result, threading.current_thread())),
-            lambda error: told.append(("failed", error, threading.current_thread())),
-            lambda stage, fraction: told.append(("progress", stage, fraction)),
+            report=lambda stage, fraction: told.append(("progress", stage, fraction)),
         )
 
-    begin.jobs = jobs
-    yield begin
-    jobs.close()
+    start.work = work
+    yield start
+    work.close()
 
 
 def endless(started):
@@ -52,7 +61,7 @@ def test_work_runs_in_another_thread_and_is_told_of_in_this(loop, told, start):
     assert what == "done"
     assert worker is not threading.current_thread()
     assert teller is threading.current_thread()
-    assert not start.jobs.running
+    assert not start.work.busy
 
 
 def test_progress_arrives_before_the_result(loop, told, start):
@@ -84,11 +93,10 @@ def test_errors_are_told(loop, told, start):
 
 def test_newer_work_supersedes_what_runs(loop, told, start):
     started = threading.Event()
-    old = start(endless(started))
+    start(endless(started))
     assert started.wait(120)
     start(lambda progress: "new")
     loop.run_until(lambda: any(t[0] == "done" for t in told))
-    assert old.cancelled.is_set()
     loop.run_for(0.2)
     assert [t[1] for t in told if t[0] != "progress"] == ["new"]
 
@@ -114,15 +122,15 @@ def test_cancelling_stops_without_a_word(loop, told, start):
     started = threading.Event()
     start(endless(started))
     assert started.wait(120)
-    assert start.jobs.cancel()
-    assert not start.jobs.cancel()
+    assert start.work.cancel("work")
+    assert not start.work.cancel("work")
     loop.run_for(0.2)
     assert [t for t in told if t[0] != "progress"] == []
 
 
 def test_a_closed_session_starts_nothing(loop, told, start):
-    start.jobs.close()
-    assert start(lambda progress: 1) is None
+    start.work.close()
+    start(lambda progress: 1)
     loop.run_for(0.1)
     assert told == []
 
@@ -138,18 +146,18 @@ def test_sessions_compute_in_turn(loop):
 
     done = []
     for _ in range(3):
-        Jobs(loop).start(work, done.append, done.append, lambda stage, fraction: None)
+        begin(Work(loop, done.append), work, done)
     loop.run_until(lambda: len(done) == 3)
     assert max(most) == 1
 
 
 def test_waiting_for_a_turn_can_be_cancelled(loop):
     started, told = threading.Event(), []
-    first, second = Jobs(loop), Jobs(loop)
-    first.start(endless(started), told.append, told.append, lambda stage, fraction: None)
+    first, second = Work(loop, told.append), Work(loop, told.append)
+    begin(first, endless(started), told)
     assert started.wait(120)
     stages = []
-    second.start(lambda p: "never", told.append, told.append, lambda stage, f: stages.append(stage))
+    begin(second, lambda p: "never", told, lambda stage, f: stages.append(stage))
     loop.run_until(lambda: bool(stages))
     assert "waiting" in stages[0]
     second.close()
@@ -176,31 +184,31 @@ def nothing(*given):
 @pytest.fixture
 def impatient(monkeypatch):
     """Let stopped work be waited for less long."""
-    monkeypatch.setattr("cutcell_app.jobs.jobs.PATIENCE", LESS)
+    monkeypatch.setattr("cutcell_app.derive.jobs.PATIENCE", LESS)
 
 
 def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told, impatient):
     go, started = threading.Event(), threading.Event()
-    deaf, other = Jobs(loop), Jobs(loop)
-    deaf.start(deaf_work(go, started), nothing, nothing, nothing)
+    deaf, other = Work(loop, nothing), Work(loop, told.append)
+    begin(deaf, deaf_work(go, started), [])
     assert started.wait(120)
-    other.start(lambda progress: "done", told.append, told.append, nothing)
+    begin(other, lambda progress: "done", told)
     loop.run_for(LESS + 0.3)
     assert told == [], "it is wanted, and others wait for it"
-    deaf.cancel()
+    deaf.cancel("work")
     loop.run_until(lambda: told == ["done"])
     go.set()
 
 
 def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told, impatient):
-    go, deaf = threading.Event(), Jobs(loop)
+    go, deaf = threading.Event(), Work(loop, nothing)
     for _ in range(MAX_UNRESPONSIVE + 1):
         started = threading.Event()
-        deaf.start(deaf_work(go, started), nothing, nothing, nothing)
+        begin(deaf, deaf_work(go, started), [])
         assert started.wait(LESS + 120)
-    deaf.cancel()
-    other = Jobs(loop)
-    other.start(lambda progress: "done", told.append, told.append, nothing)
+    deaf.cancel("work")
+    other = Work(loop, told.append)
+    begin(other, lambda progress: "done", told)
     loop.run_for(LESS + 0.5)
     assert told == []
     go.set()
@@ -209,7 +217,7 @@ def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told, impatient)
 
 def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
     go, begun = threading.Event(), []
-    newest = Newest(Jobs(loop), told.append)
+    work_of_page = Work(loop, told.append)
 
     def work(number, progress):
         begun.append(number)
@@ -217,7 +225,7 @@ def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
         return number
 
     for number in range(5):
-        newest.do(partial(work, number), told.append)
+        work_of_page.newest("scene", partial(work, number), told.append)
     loop.run_for(0.1)
     go.set()
     loop.run_until(lambda: told == [0, 4])
@@ -225,18 +233,18 @@ def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
 
 
 def test_the_newest_is_done_after_a_failure_too(loop, told):
-    newest = Newest(Jobs(loop), told.append)
+    work_of_page = Work(loop, told.append)
     error, go = ValueError("no"), threading.Event()
 
     def fails(progress):
         assert go.wait(10)
         raise error
 
-    newest.do(fails, told.append)
-    newest.do(lambda progress: "yes", told.append)
+    work_of_page.newest("scene", fails, told.append)
+    work_of_page.newest("scene", lambda progress: "yes", told.append)
     go.set()
     loop.run_until(lambda: told == [error, "yes"])
-    newest.cancel()
+    work_of_page.close()
 
 
 def test_running_out_of_memory_is_told_like_any_error(loop, told, start):

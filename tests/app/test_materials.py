@@ -7,12 +7,16 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell_app.commands import keys, loading, materials
-from cutcell_app.panels.pose import pose as pose_panel
-from cutcell_app.scenes import following, resolve
-from cutcell_app.state.url import from_query, to_query
+from cutcell_app.document import loading
+from cutcell_app.document.address import from_query, to_query
+from cutcell_app.features.pose import materials
+from cutcell_app.features.pose.controls import CONTROLS
+from cutcell_app.features.scenes import following, resolve
+from cutcell_app.shell import keys
 from cutcell_app.widgets.changes import changes
+from cutcell_app.widgets.controls import draw
 from cutcell_viewers.description import Description
+from tests.app.loop import settled
 from tests.viewers.arm import arm_rig
 from tests.viewers.textures import png, squares, wall
 
@@ -33,16 +37,11 @@ def posing(session, loop, rig):
 
 def show(session, loop, rig):
     loading.show_rig(session, rig)
-    settle(session, loop)
-
-
-def settle(session, loop):
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
-    assert session.state.message is None, session.state.message
+    settled(session, loop)
 
 
 def buttons(session):
-    groups = pose_panel(session).select(pmui.RadioButtonGroup)
+    groups = draw(session, CONTROLS).select(pmui.RadioButtonGroup)
     return next(one for one in groups if "plain" in one.options.values())
 
 
@@ -64,16 +63,16 @@ def test_nothing_is_read_before_it_is_wanted(posing, loop, monkeypatch):
     monkeypatch.setattr(materials, "read", lambda *given: seen.append(1) or read(*given))
     posing.state.panel = "weights"
     posing.state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     assert seen == []
     assert posing.state.materials is None
     posing.state.panel = "pose"
-    settle(posing, loop)
-    assert posing.state.materials[0] is posing.state.rig.mesh
+    settled(posing, loop)
+    assert posing.state.materials is not None
     posing.state.pose_colors = "plain"
     posing.state.pose_colors = "materials"
     posing.state.turns = {0: (0, 0, 30)}
-    settle(posing, loop)
+    settled(posing, loop)
     assert seen == [1]
 
 
@@ -81,7 +80,7 @@ def test_the_body_is_seen_in_them_without_a_legend(posing, loop):
     state = posing.state
     state.pose_colors = "materials"
     assert resolve(state).legend is not None, "until they are read the weights are seen"
-    settle(posing, loop)
+    settled(posing, loop)
     scene = resolve(state)
     actor = scene.actors["body"]
     assert scene.legend is actor.colors is actor.scalars is None
@@ -104,7 +103,7 @@ def test_what_hangs_on_the_body_has_its_materials_too(posing, loop, rig):
     )  # fmt: skip
     show(posing, loop, sword)
     posing.state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     actors = resolve(posing.state).actors
     given = actors["attachment 0"].materials
     np.testing.assert_array_equal(given.corners, actors["body"].materials.corners)
@@ -113,15 +112,15 @@ def test_what_hangs_on_the_body_has_its_materials_too(posing, loop, rig):
 def test_they_are_in_the_address_and_undone(posing, loop):
     state = posing.state
     state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     choices, _, problems = from_query(to_query(state), state)
     assert choices["pose_colors"] == "materials"
     assert problems == []
     keys.act(posing, "undo")
-    settle(posing, loop)
+    settled(posing, loop)
     assert state.pose_colors == "weights"
     keys.act(posing, "redo")
-    settle(posing, loop)
+    settled(posing, loop)
     assert state.pose_colors == "materials"
 
 
@@ -129,22 +128,21 @@ def test_a_repaired_mesh_gets_its_own(posing, loop, rig):
     from cutcell.io.gltf.write.faces import with_faces
 
     posing.state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     kept = np.ones(len(rig.mesh.faces), bool)
     kept[3] = False
     posing.state.rig = with_faces(rig, kept, ~kept)
-    loop.run_until(lambda: not posing.tasks.running)
-    mesh, textures = posing.state.materials
-    assert mesh is posing.state.rig.mesh
+    loop.rest(posing)
+    textures = posing.state.materials
     assert len(textures.body.corners) == len(rig.mesh.faces) - 1
 
 
 def test_a_broken_image_is_told_below_the_choice_and_is_no_error(posing, loop, tmp_path):
     broken = wall(b"no image", pbr={"baseColorFactor": [1, 0, 0, 1]})
-    panel = pose_panel(posing)
+    panel = draw(posing, CONTROLS)
     show(posing, loop, cutcell.load(broken.save(tmp_path / "broken.glb")))
     posing.state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     texts = [str(one.object) for one in panel.select(pmui.Typography)]
     assert any("cannot be shown" in text for text in texts)
     assert (resolve(posing.state).actors["body"].materials.tints == (255, 0, 0)).all()
@@ -152,7 +150,7 @@ def test_a_broken_image_is_told_below_the_choice_and_is_no_error(posing, loop, t
 
 def test_images_are_sent_once_and_given_back(posing, loop):
     posing.state.pose_colors = "materials"
-    settle(posing, loop)
+    settled(posing, loop)
     scene = resolve(posing.state)
     sent = set()
     message = changes(Description(), scene, sent)

@@ -8,7 +8,7 @@ import weakref
 import pytest
 
 from benchmarks.visitors import BOUND, Visitor
-from cutcell_app.commands.session import Session
+from cutcell_app.document.session import Session
 from cutcell_assets import demo_path
 from tests.app.serving import serving
 

@@ -1,27 +1,45 @@
 """Menus of the sidebar, without a page."""
 
+from types import SimpleNamespace
+
 import panel_material_ui as pmui
 
-from cutcell_app.panels.bone import bone
-from cutcell_app.panels.controls import offer, unique_names
-from cutcell_app.panels.graph import graph
-from cutcell_app.scenes import resolve
+import cutcell
+from cutcell_app.document import loading
+from cutcell_app.document.state import State
+from cutcell_app.features.graph.controls import CONTROLS
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.weights.bone import BONE
+from cutcell_app.shell import character
+from cutcell_app.widgets.controls import draw, pick
+from cutcell_app.widgets.text import unique_names
 from cutcell_viewers.graph_scene import LAYERS
 from cutcell_viewers.palette import to_hex
+from tests.viewers.arm import arm_rig
 
 
 def test_an_index_that_stays_is_shown_by_its_new_name_at_once():
-    select = pmui.Select(options=[])
+    state = State(actors={"hand": 0, "foot": 0}, joint=1)
+    chosen = []
+    row = pick(
+        "Mesh",
+        lambda state: list(state.actors),
+        lambda state: state.joint,
+        lambda session, index: chosen.append(index),
+    )
+    select = draw(SimpleNamespace(state=state), row)
     shown = select.get_root().data
-    told = []
-    select.param.watch(lambda event: told.append(event.new), "value")
-    offer(select, ["hand", "foot"], 1)
+    reports = []
+    select.param.watch(lambda event: reports.append(event.new), "value")
     assert (shown.value, shown.options) == ("foot", ["hand", "foot"])
-    offer(select, ["paw", "tail"], 1)
+    state.actors = {"paw": 0, "tail": 0}
     assert (shown.value, shown.options) == ("tail", ["paw", "tail"])
-    offer(select, ["paw", "tail"], 0)
+    state.joint = 0
     assert shown.value == "paw"
-    assert told == ["foot", "tail", "paw"]
+    assert reports == ["tail", "paw"]
+    assert chosen == []
+    select.value = "tail"
+    assert chosen == [1]
 
 
 def test_names_that_come_again_are_told_apart():
@@ -30,7 +48,7 @@ def test_names_that_come_again_are_told_apart():
 
 
 def test_the_list_of_bones_follows_the_choice_and_makes_it(bound):
-    menu = next(iter(bone(bound).select(pmui.Select)))
+    menu = next(iter(draw(bound, BONE).select(pmui.Select)))
     names = bound.state.rig.skeleton.names
     assert menu.value == names[bound.state.joint]
     menu.value = names[0]
@@ -40,7 +58,7 @@ def test_the_list_of_bones_follows_the_choice_and_makes_it(bound):
 
 
 def test_the_switch_of_a_layer_has_the_colour_that_its_edges_are_drawn_in(bound):
-    switches = {one.label: one for one in graph(bound).select(pmui.Switch)}
+    switches = {one.label: one for one in draw(bound, CONTROLS).select(pmui.Switch)}
     bound.state.panel = "graph"
     for dark in (False, True):
         bound.state.dark = dark
@@ -49,3 +67,16 @@ def test_the_switch_of_a_layer_has_the_colour_that_its_edges_are_drawn_in(bound)
             look = switches[name.capitalize()].sx
             drawn = to_hex(actors[name].color)
             assert {color for style in look.values() for color in style.values()} == {drawn}
+
+
+def test_no_demo_is_opened_while_a_file_is_read(session, loop, monkeypatch, tmp_path):
+    opened = []
+    monkeypatch.setattr(character, "load_demo", lambda session, demo: opened.append(demo))
+    menu = draw(session, character.CHARACTER).select(pmui.Select)[0]
+    menu.get_root()  # as the page is rendered: a value that is not offered would be replaced
+    cutcell.save(tmp_path / "file.glb", arm_rig())
+    loading.load_files(session, [tmp_path / "file.glb"])
+    assert (menu.value, next(iter(menu.options))) == ("Your own", "Your own")
+    loop.run_until(lambda: session.state.rig is not None)
+    assert (menu.value, next(iter(menu.options))) == ("~", "file.glb")
+    assert opened == []

@@ -10,9 +10,9 @@ import pytest
 
 from cutcell.errors import FileError
 from cutcell.runtime.display import printable
-from cutcell_app.jobs.messages import error_text, sentence
-from cutcell_app.panels.controls import as_text, unique_names
 from cutcell_app.server.log import Printable
+from cutcell_app.server.messages import error_text, sentence
+from cutcell_app.widgets.text import as_text, unique_names
 
 
 @pytest.mark.parametrize(

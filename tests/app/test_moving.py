@@ -8,29 +8,32 @@ import pytest
 import trimesh
 
 import cutcell
-from cutcell import Corrections, JointCorrection
+from cutcell import Edits, JointEdit
 from cutcell.errors import SkeletonError
 from cutcell.rig import Skeleton, TriangleMesh
-from cutcell_app.commands import keys, loading, moving
+from cutcell_app.document import loading
 from cutcell_app.editing import cross_section_centre
-from cutcell_app.panels.moving import place
-from cutcell_app.scenes import resolve
-from cutcell_app.state.corrections import from_text, to_text
+from cutcell_app.features.correct import moving
+from cutcell_app.features.correct.choices import from_text, to_text
+from cutcell_app.features.correct.moving_controls import PLACE
+from cutcell_app.features.scenes import resolve
+from cutcell_app.shell import keys
+from cutcell_app.widgets.controls import column, draw
+from tests.app.loop import settled
 from tests.viewers.arm import WORLD, arm_rig
 
 ELBOW = 1
 
 
-def settled(session, loop):
-    loop.run_until(lambda: not session.tasks.running)
-    assert session.state.message is None, session.state.message
+def rested(session, loop):
+    settled(session, loop)
     assert session.state.dragged is None
 
 
 def the_same_as_bind(session, rig):
     state = session.state
     joints = rig.skeleton.joints.copy()
-    for name, one in state.corrections.joints.items():
+    for name, one in state.edits.joints.items():
         joints[rig.skeleton.names.index(name)] = one.position
     changed = replace(rig, skeleton=replace(rig.skeleton, joints=joints))
     fresh = cutcell.bind(changed, state.resolution)
@@ -47,7 +50,7 @@ def drag(session, at, joint=ELBOW, done=False):
 @pytest.fixture
 def held(bound, loop):
     bound.state.param.update(joint=ELBOW, joint_handle=True)
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     return bound
 
 
@@ -56,35 +59,35 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     before, steps = state.binding.weights, len(held.history._past)
     bones = resolve(state).actors["bones"].points
     assert held.view.last_sent("mover")["at"] == pytest.approx([0, 0, 0])
-    fields = pmui.Column(*place(held)).select(pmui.TextInput)
+    fields = draw(held, column(PLACE)).select(pmui.TextInput)
     drag(held, [0.1, 0.05, 0])
     assert [field.value for field in fields] == ["0.1", "0.05", "0"]
     assert not np.array_equal(resolve(state).actors["bones"].points, bones)
-    assert not state.corrections
-    loop.run_until(lambda: not held.tasks.running)
+    assert not state.edits
+    loop.rest(held)
     on_the_way = resolve(state).actors["body"].colors
     assert not np.array_equal(state.dragged.binding.weights, before)
     for x in (0.2, 0.3, 0.4):
         drag(held, [x, 0.05, 0])
     drag(held, [0.4, 0.1, 0], done=True)
-    assert state.corrections == Corrections({"elbow": JointCorrection(position=(0.4, 0.1, 0))})
+    assert state.edits == Edits({"elbow": JointEdit(position=(0.4, 0.1, 0))})
     assert [field.value for field in fields] == ["0.4", "0.1", "0"]
     assert held.view.last_sent("mover")["at"] == pytest.approx([0.4, 0, -0.1])
-    settled(held, loop)
+    rested(held, loop)
     the_same_as_bind(held, rig)
     assert not np.array_equal(resolve(state).actors["body"].colors, on_the_way)
     assert state.rig.skeleton.joints[ELBOW].tolist() == [0.4, 0.1, 0]
     assert len(held.history._past) == steps + 1, "one step a drag"
     keys.act(held, "undo")
-    settled(held, loop)
-    assert not state.corrections
+    rested(held, loop)
+    assert not state.edits
     assert np.array_equal(state.rig.skeleton.joints, rig.skeleton.joints)
     np.testing.assert_allclose(state.binding.weights, before, rtol=0, atol=1e-9)
     keys.act(held, "redo")
-    settled(held, loop)
+    rested(held, loop)
     the_same_as_bind(held, rig)
     keys.act(held, "reset")
-    settled(held, loop)
+    rested(held, loop)
     assert np.array_equal(state.rig.skeleton.joints, rig.skeleton.joints)
 
 
@@ -93,7 +96,7 @@ def test_what_is_left_while_it_is_dragged_is_as_it_was(held, loop):
     held.state.panel = "graph"
     assert held.state.dragged is None
     assert held.view.last_sent("mover") is None
-    settled(held, loop)
+    rested(held, loop)
     held.state.panel = "weights"
     drag(held, [0.1, 0.05, 0], joint=0)  # of a joint that is no longer chosen
     assert held.state.dragged is None
@@ -109,34 +112,34 @@ def test_where_no_joint_can_be_is_told(held, loop, at, sentence):
     assert sentence in held.state.message[1]
     assert held.state.dragged is None
     moving.put(held, at)
-    assert not held.state.corrections
+    assert not held.state.edits
     assert np.array_equal(held.state.rig.skeleton.joints, arm_rig().skeleton.joints)
 
 
 def test_numbers_put_a_joint_and_back(held, loop):
-    column = pmui.Column(*place(held))
-    fields, state = column.select(pmui.TextInput), held.state
+    section = draw(held, column(PLACE))
+    fields, state = section.select(pmui.TextInput), held.state
     assert [field.value for field in fields] == ["0", "0", "0"]
     fields[0].value = "0.25"
-    assert state.corrections.joints["elbow"].position == (0.25, 0, 0)
-    settled(held, loop)
+    assert state.edits.joints["elbow"].position == (0.25, 0, 0)
+    rested(held, loop)
     the_same_as_bind(held, arm_rig())
     fields[1].value = "far"
     assert state.message[1] == "Y must be a number, not 'far'."
     assert fields[1].value == "0"
     state.message = None
-    assert from_text(to_text(state.corrections)) == state.corrections
-    buttons = {button.label: button for button in column.select(pmui.Button)}
+    assert from_text(to_text(state.edits)) == state.edits
+    buttons = {button.label: button for button in section.select(pmui.Button)}
     moving.put(held, [0.25, 0.1, 0.1])
     buttons["Centre in limb"].clicks += 1
     assert state.rig.skeleton.joints[ELBOW] == pytest.approx([0.25, 0, 0], abs=0.02)
     buttons["Reset position"].clicks += 1
-    assert not state.corrections
+    assert not state.edits
     assert [field.value for field in fields] == ["0", "0", "0"]
     assert buttons["Reset position"].disabled
     state.joint = 0
     moving.put(held, [-5, 0, 0])
-    held.tasks.after_a_pause(lambda: None)
+    held.work.after_a_pause(lambda: None, "rest")
     buttons["Centre in limb"].clicks += 1
     assert "not in the body" in state.message[1]
 
@@ -157,21 +160,21 @@ def test_the_other_side_moves_along(session, loop):
     loop.run_until(lambda: session.state.binding is not None)
     state = session.state
     state.param.update(joint=1, joint_handle=True)
-    loop.run_until(lambda: not session.tasks.running)
-    told = session.view.last_sent("mover")["mirror"]
-    assert np.abs(told) == pytest.approx([1, 0, 0, 0])
+    loop.rest(session)
+    reports = session.view.last_sent("mover")["mirror"]
+    assert np.abs(reports) == pytest.approx([1, 0, 0, 0])
     drag(session, [0.7, 0.1, 0.05], joint=1, done=True)
-    assert {n: one.position for n, one in state.corrections.joints.items()} == {
+    assert {n: one.position for n, one in state.edits.joints.items()} == {
         "arm.L": (0.7, 0.1, 0.05), "arm.R": (-0.7, 0.1, 0.05),
     }  # fmt: skip
-    settled(session, loop)
+    rested(session, loop)
     the_same_as_bind(session, pair())
     moving.put_back(session)
-    assert not state.corrections
+    assert not state.edits
     state.mirrored = False
     assert session.view.last_sent("mover")["mirror"] is None
     moving.put(session, [0.7, 0, 0])
-    assert list(state.corrections.joints) == ["arm.L"]
+    assert list(state.edits.joints) == ["arm.L"]
     state.param.update(mirrored=True, joint=0)
     assert session.view.last_sent("mover")["mirror"] is None, "it is its own mirror image"
 
@@ -185,9 +188,9 @@ def test_the_middle_of_a_limb_is_not_of_what_lies_beside_it():
     rig = cutcell.Rig(
         TriangleMesh(vertices, faces), Skeleton([[0, 0, -1.5], off, [0, 0, 1.5]], [-1, 0, 1])
     )
-    found = cross_section_centre(rig, 1)
-    assert np.linalg.norm(found[:2]) < 0.02
-    assert found[2] == pytest.approx(0.3, abs=0.05)
+    result = cross_section_centre(rig, 1)
+    assert np.linalg.norm(result[:2]) < 0.02
+    assert result[2] == pytest.approx(0.3, abs=0.05)
     outside = rig.with_joints([[0, 0, -1.5], [0.33, 0, 0], [0, 0, 1.5]])
     with pytest.raises(SkeletonError, match="not in the body"):
         cross_section_centre(outside, 1)

@@ -4,17 +4,30 @@ import numpy as np
 import panel_material_ui as pmui
 import pytest
 
-import cutcell
-from cutcell import Corrections
-from cutcell_app.commands import brush, correct, keys, loading, pose
-from cutcell_app.commands.brush import STEPS, in_steps, radius_of
+from cutcell import Edits, Layer, Locked, Mask
+from cutcell_app.document import loading
+from cutcell_app.document.address import from_query
 from cutcell_app.editing import Brush, paint_weights
-from cutcell_app.panels.brush import brush as section_of_brush
-from cutcell_app.scenes import resolve
-from cutcell_app.scenes.weights import painted_colors
-from cutcell_app.state.brush import MIN_RADIUS, MIN_STRENGTH, selected
-from cutcell_app.state.corrections import MAX_IN_ADDRESS, MAX_VERTICES, to_text
-from cutcell_app.state.url import from_query
+from cutcell_app.features.brush import controls as brush_controls
+from cutcell_app.features.brush import strokes as brush
+from cutcell_app.features.brush.choices import MIN_RADIUS, MIN_STRENGTH, selected
+from cutcell_app.features.brush.strokes import radius_of
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.features.correct.choices import (
+    MAX_IN_ADDRESS,
+    MAX_VERTICES,
+    to_text,
+    vertices_named,
+)
+from cutcell_app.features.layers.commands import STEPS, in_steps
+from cutcell_app.features.layers.stack import painted_vertices
+from cutcell_app.features.pose import results as pose
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.select.controls import SELECTION
+from cutcell_app.features.weights.scene import painted_colors
+from cutcell_app.shell import keys
+from cutcell_app.widgets.controls import draw
+from tests.app.loop import check_bound_as_by_core, settled
 from tests.viewers.arm import arm_rig
 
 MIDDLE = 30
@@ -28,7 +41,7 @@ def painter(bound, loop, monkeypatch):
     bound.answers = answers
     bound.state.joint = 2
     bound.state.param.update(brush=True, brush_radius=0.2, brush_mirrored=False)
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     return bound
 
 
@@ -39,16 +52,6 @@ def stroke(session, *vertices, **more):
         point = [vertex, vertex, vertex, 1, 0, 0]
         last = place == len(vertices) - 1
         act({"points": point, "first": place == 0, "done": last, "mode": None, **more})
-
-
-def settled(session, loop):
-    loop.run_until(lambda: not session.tasks.running)
-    assert session.state.message is None, session.state.message
-
-
-def the_same_as_bind(session):
-    fresh = cutcell.bind(arm_rig(), session.state.resolution, corrections=session.state.corrections)
-    np.testing.assert_allclose(session.state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("mode", ["add", "subtract", "replace", "smooth"])
@@ -67,17 +70,24 @@ def test_a_stroke_is_what_the_core_paints_and_one_step_to_undo(painter, loop, mo
     np.testing.assert_allclose(after.sum(axis=1), 1, rtol=0, atol=1e-12)
     changed = (np.abs(expected - before) > 1 / STEPS).any(axis=1)
     assert changed.any()
-    others = np.delete(np.arange(len(after)), [*state.corrections.vertices])
+    others = np.delete(np.arange(len(after)), painted_vertices(state.edits))
     assert np.array_equal(after[others], before[others])
-    the_same_as_bind(painter)
+    check_bound_as_by_core(painter, arm_rig())
     keys.act(painter, "undo")
     settled(painter, loop)
     assert np.array_equal(state.binding.weights, before)
-    assert not state.corrections
+    assert not state.edits
     assert state.brush, "undo takes the stroke back, not the brush"
     keys.act(painter, "redo")
     settled(painter, loop)
     assert np.array_equal(state.binding.weights, after)
+
+
+def test_the_brush_prepares_smoothing_before_the_first_stroke(painter, loop, monkeypatch):
+    monkeypatch.setattr("cutcell_app.editing.stroke.cotangent_laplacian", None)
+    stroke(painter, MIDDLE, mode="smooth")
+    settled(painter, loop)
+    assert painter.state.edits
 
 
 def test_strokes_that_follow_at_once_are_steps_of_their_own(painter, loop):
@@ -92,7 +102,7 @@ def test_strokes_that_follow_at_once_are_steps_of_their_own(painter, loop):
         keys.act(painter, "undo")
         settled(painter, loop)
         assert np.array_equal(state.binding.weights, before)
-    assert not state.corrections
+    assert not state.edits
 
 
 def test_colours_follow_each_piece_and_are_those_of_the_scene_after(painter, loop):
@@ -135,14 +145,14 @@ def test_a_stroke_that_is_cancelled_or_changes_nothing_leaves_nothing(painter, l
     act({"points": [], "done": True})
     assert painter.answers[-1] == {"painted": {"gone": True}}
     act({"points": [10**6] * 3 + [1, 0, 0], "first": True, "done": True})
-    assert not state.corrections
+    assert not state.edits
     state.brush_mode = "replace"
     state.brush_value = 0.0
     away = int(state.weights[:, 2].argmin())
     assert state.weights[away, 2] == 0
     state.brush_radius = MIN_RADIUS
     stroke(painter, away)
-    assert not state.corrections
+    assert not state.edits
     assert painter.history.now is steps, "no step to undo"
 
 
@@ -154,10 +164,10 @@ def test_locked_and_idle_joints_are_told(painter, loop):
     assert '"wrist" is locked' in state.message[1]
     assert painter.answers[-1] == {"painted": {"gone": True}}
     correct.correct_joint(painter, 2, locked=False, deform=False)
-    loop.run_until(lambda: not painter.tasks.running)
+    loop.rest(painter)
     stroke(painter, MIDDLE)
     assert "carries no weight" in state.message[1]
-    assert not state.corrections.vertices
+    assert not len(painted_vertices(state.edits))
     correct.correct_joint(painter, 2, deform=True)
     correct.correct_joint(painter, 0, locked=True)
     state.message = None
@@ -165,7 +175,7 @@ def test_locked_and_idle_joints_are_told(painter, loop):
     before = state.weights
     stroke(painter, int((before[:, 1] * before[:, 2]).argmax()))
     settled(painter, loop)
-    assert state.corrections.vertices
+    assert len(painted_vertices(state.edits))
     np.testing.assert_allclose(state.weights[:, 0], before[:, 0], rtol=0, atol=1 / STEPS)
 
 
@@ -179,7 +189,7 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
     settled(painter, loop)
     assert "scalars" in painter.answers[-1]["painted"]
     posed = state.binding.weights
-    the_same_as_bind(painter)
+    check_bound_as_by_core(painter, arm_rig())
     state.panel = "weights"
     keys.act(painter, "undo")
     keys.act(painter, "undo")
@@ -201,23 +211,25 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
     for vertex in range(0, len(arm_rig().mesh.vertices), 75):
         stroke(painter, vertex)
         settled(painter, loop)
-    held = state.corrections
-    assert len(held.vertices) > MAX_VERTICES
+    held = state.edits
+    assert vertices_named(held) > MAX_VERTICES
     assert len(to_text(held)) > MAX_IN_ADDRESS
-    said = from_query(painter.view.last_sent("address"), state)[1]["corrections"]
+    said = from_query(painter.view.last_sent("address"), state)[1]["edits"]
     assert len(said) < MAX_IN_ADDRESS
-    painter.arrival = {"corrections": said}
+    painter.arrival = {"edits": said}
     loading.show_rig(painter, arm_rig())
     settled(painter, loop)
-    assert state.corrections == held
-    the_same_as_bind(painter)
-    assert Corrections.from_json(held.to_json()) == held
+    assert state.edits == held
+    check_bound_as_by_core(painter, arm_rig())
+    assert Edits.from_json(held.to_json()) == held
     state.resolution = 20
     settled(painter, loop)
-    the_same_as_bind(painter)
-    for vertex, row in held.vertices.items():
-        given = [row.get(name, 0.0) for name in state.rig.skeleton.names]
-        assert state.binding.weights[vertex].tolist() == given
+    check_bound_as_by_core(painter, arm_rig())
+    (layer,) = held.layers
+    columns = [state.rig.skeleton.names.index(name) for name in layer.content.joints]
+    found = state.binding.weights[layer.content.vertices]
+    np.testing.assert_array_equal(found[:, columns], layer.content.rows.toarray())
+    np.testing.assert_allclose(found[:, columns].sum(axis=1), 1)
 
 
 def test_keys_and_switches(painter, loop):
@@ -247,7 +259,7 @@ def test_keys_and_switches(painter, loop):
 
 
 def test_the_section_says_what_is_painted(painter, loop):
-    section = section_of_brush(painter)
+    section = draw(painter, brush_controls.BRUSH)
     modes = section.select(pmui.RadioButtonGroup)[0]
     modes.value = "smooth"
     assert painter.state.brush_mode == "smooth"
@@ -259,7 +271,7 @@ def test_the_section_says_what_is_painted(painter, loop):
     value = section.select(pmui.FloatSlider)[2]
     assert not value.visible
     painter.state.brush_mode = "replace"
-    loop.run_for(0.05)
+    loop.rest(painter)
     assert value.visible
 
 
@@ -280,7 +292,7 @@ def test_whole_steps_sum_to_one():
 def test_the_other_side_is_painted_where_there_is_one(session, loop):
     session.state.resolution = 16
     loading.load_demo(session, "robot")
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
     state = session.state
     names = state.rig.skeleton.names
     state.param.update(joint=names.index("forearm.L"), brush=True, brush_radius=0.05)
@@ -291,11 +303,11 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     vertex = int(np.where(state.weights[:, state.joint] < 0.5, distance, np.inf).argmin())
     point = [vertex, vertex, vertex, 1, 0, 0]
     session.view._listeners["brush"]({"points": point, "first": True, "done": True})
-    loop.run_until(lambda: not session.tasks.running)
-    x = state.rig.mesh.vertices[list(state.corrections.vertices), 0]
+    loop.rest(session)
+    x = state.rig.mesh.vertices[painted_vertices(state.edits), 0]
     assert (x > 0).any()
     assert (x < 0).any()
-    assert state.corrections.joints == {}
+    assert state.edits.joints == {}
     state.panel = "pose"
     assert session.view.last_sent("brush") == part
     pose.turn_joint(session, 0, 20.0)
@@ -315,7 +327,7 @@ def test_strokes_stay_on_what_is_selected(painter, loop):
     chosen = selected(state)
     assert 1 < chosen.sum() < len(chosen)
     assert chosen[MIDDLE]
-    assert not state.corrections
+    assert not state.edits
     assert len(resolve(state, painter.memo).actors["selection"].points) == chosen.sum()
     state.param.update(brush_mode="add", brush_radius=0.4)
     before = state.binding.weights
@@ -348,6 +360,51 @@ def test_ctrl_takes_away_from_the_selection_and_a_cancelled_stroke_leaves_it(pai
     assert selected(state) is None, "nothing selected limits nothing"
 
 
+HALF = np.arange(0, 120, 2)
+"""Vertices of which many are under the brush at `MIDDLE`."""
+
+
+@pytest.mark.parametrize("mode", ["add", "replace", "smooth"])
+@pytest.mark.parametrize("locked", [0, 2])
+@pytest.mark.parametrize("opacity", [1, 0.5])
+def test_a_stroke_shows_what_locks_of_some_vertices_leave(painter, loop, mode, locked, opacity):
+    state = painter.state
+    names, in_file = state.rig.skeleton.names, state.rig.weights
+    lock = Layer(Locked([names[locked]]), Mask(vertices=HALF), opacity=opacity)
+    correct.correct(painter, Edits(layers=[lock]))
+    state.param.update(brush_mode=mode, brush_value=0.7)
+    settled(painter, loop)
+    before, count = state.weights, len(state.weights)
+    stroke(painter, MIDDLE, MIDDLE + 1)
+    last = painter.answers[-1]["painted"]
+    settled(painter, loop)
+    after = state.weights
+    if opacity == 1:
+        assert np.array_equal(after[HALF, locked], in_file[HALF, locked])
+    np.testing.assert_allclose(after[HALF, locked], before[HALF, locked], atol=1 / STEPS)
+    assert (after != before).any()
+    np.testing.assert_allclose(after[last["vertices"], 2], last["scalars"], atol=2 / STEPS)
+    others = np.setdiff1d(np.arange(count), last["vertices"])
+    assert np.array_equal(after[others], before[others])
+    check_bound_as_by_core(painter, arm_rig())
+
+
+def test_a_stroke_where_the_bone_is_locked_says_so(painter, loop):
+    state = painter.state
+    state.brush_radius = MIN_RADIUS
+    lock = Layer(Locked([state.rig.skeleton.names[2]]), Mask(vertices=HALF))
+    correct.correct(painter, Edits(layers=[lock]))
+    settled(painter, loop)
+    edits = state.edits
+    stroke(painter, MIDDLE)
+    assert "is locked" in state.message[1]
+    assert state.edits is edits
+    state.message = None
+    stroke(painter, MIDDLE + 1)
+    settled(painter, loop)
+    assert state.edits != edits
+
+
 def texts(section):
     return [part for part in section.select(pmui.Typography) if isinstance(part.object, str)]
 
@@ -356,8 +413,8 @@ def test_a_selection_is_of_one_mesh(painter, loop):
     state = painter.state
     brush.select(painter, np.arange(len(state.rig.mesh.vertices)) < 5)
     assert selected(state).sum() == 5
-    section = section_of_brush(painter)
-    assert any("Strokes are limited to 5 vertices of" in text.object for text in texts(section))
+    section = draw(painter, SELECTION)
+    assert any("5 vertices of" in one.object and "limited" in one.object for one in texts(section))
     loading.load_demo(painter, "octopus")
-    loop.run_until(lambda: not painter.tasks.running)
+    loop.rest(painter)
     assert selected(state) is None

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from cutcell_app.commands import keys, loading, pairs
-from cutcell_app.layout import status
-from cutcell_app.layout.session import begin
-from cutcell_app.panels.pairs import facts, summary, threshold_text
-from cutcell_app.panels.pairs import pairs as panel
-from cutcell_app.scenes import resolve
-from cutcell_app.scenes.common import bounds_of
-from cutcell_app.state.pairs import OpenedAudit
+from cutcell_app.document import loading
+from cutcell_app.features.character import bounds_of
+from cutcell_app.features.pairs import results as pairs
+from cutcell_app.features.pairs.choices import OpenedAudit
+from cutcell_app.features.pairs.controls import CONTROLS, facts, summary, threshold_text
+from cutcell_app.features.scenes import resolve
+from cutcell_app.shell import keys, status
+from cutcell_app.shell.begin import begin
+from cutcell_app.widgets.controls import draw
 from cutcell_lab.dataset import load_audit
 from tests.app.audits import saved_audit
 from tests.viewers.arm import arm_rig
@@ -129,4 +130,4 @@ def test_a_character_that_is_gone_is_told(looking, loop, audited):
 def test_without_an_audit_the_panel_says_how_to_make_one(bound):
     bound.state.panel = "pairs"
     assert "body" in resolve(bound.state).actors
-    assert "cutcell dataset audit FOLDER" in panel(bound)[0].object
+    assert "cutcell dataset audit FOLDER" in draw(bound, CONTROLS)[0].object

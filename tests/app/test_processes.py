@@ -14,11 +14,12 @@ import pytest
 
 import cutcell
 from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
+from cutcell_app.derive.processes import in_process
 from cutcell_app.files import reading
 from cutcell_app.files.reading import read
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.jobs.processes import in_process
 from cutcell_assets import demo_path
+from tests.app.loop import wait_until
 from tests.conftest import ROOT
 
 pytestmark = pytest.mark.slow
@@ -34,7 +35,7 @@ class OddError(Exception):
 SERVER = """
 import subprocess, sys
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.jobs.processes import in_process
+from cutcell_app.derive.processes import in_process
 in_process(subprocess.call, ["sh", "-c", 'echo $PPID $$ > "$0"; sleep 600', sys.argv[1]])
 """
 
@@ -43,7 +44,7 @@ KILLED_SERVER = """
 import os, signal
 from cutcell_app.files.storage import Storage
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.jobs.processes import get_ready, in_process
+from cutcell_app.derive.processes import get_ready, in_process
 get_ready(Storage().make)
 in_process(divmod, 7, 2)
 os.kill(os.getpid(), signal.SIGKILL)
@@ -70,13 +71,6 @@ def starts_another(path):
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     path.write_text(f"{os.getpid()} {child.pid}")
     time.sleep(600)
-
-
-def wait_until(condition, seconds=120):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not come about in time"
-        time.sleep(0.02)
 
 
 def gone(pid):
@@ -111,8 +105,8 @@ def test_running_out_of_memory_is_told():
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux chooses whom to end so")
 def test_where_memory_runs_out_it_is_ended_before_the_server():
-    ours = int(Path("/proc/self/oom_score_adj").read_text())
-    assert int(in_process(Path.read_text, Path("/proc/self/oom_score_adj"))) == 1000 > ours
+    computed = int(Path("/proc/self/oom_score_adj").read_text())
+    assert int(in_process(Path.read_text, Path("/proc/self/oom_score_adj"))) == 1000 > computed
 
 
 def test_a_crash_is_told_and_harms_nobody():

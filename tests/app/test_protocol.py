@@ -3,11 +3,15 @@
 import ast
 import re
 
+from cutcell_app.shell.view_parts import PARTS
 from cutcell_app.widgets.modules import FOLDER
-from cutcell_app.widgets.protocol import FROM_BROWSER, TO_BROWSER
+from cutcell_app.widgets.protocol import FROM_BROWSER, FROM_WIDGETS, TO_BROWSER
 from tests.test_layers import ROOT
 
-OWN_MESSAGES = {"inspector", "joint_tree", "methods", "rows", "tour_card", "welcome"}
+OWN_MESSAGES = {
+    "curves", "flat_scene", "histogram", "inspector", "joint_tree", "lesson", "methods", "rows",
+    "weights_table", "welcome",
+}  # fmt: skip
 """Widgets beside the view, whose messages are theirs alone."""
 SERVER = {path: path.read_text(encoding="utf-8") for path in (ROOT / "app").rglob("*.py")}
 SCRIPTS = "\n".join(
@@ -17,9 +21,12 @@ SCRIPTS = "\n".join(
 )
 
 
+WIDGETS = "\n".join((FOLDER / f"{name}.js").read_text(encoding="utf-8") for name in OWN_MESSAGES)
+
+
 def words(pattern, text):
     """Return all that the groups of a pattern match."""
-    return {word for found in re.finditer(pattern, text) for word in found.groups() if word}
+    return {word for result in re.finditer(pattern, text) for word in result.groups() if word}
 
 
 def test_what_the_browser_sends_is_declared_and_listened_to():
@@ -29,6 +36,10 @@ def test_what_the_browser_sends_is_declared_and_listened_to():
     heard = words(r'listen\("([^"]+)"|"(upload-\w+)":', server)
     heard |= words(r'kind == "([^"]+)"', SERVER[ROOT / "app/widgets/view.py"])
     assert heard == FROM_BROWSER.keys()
+
+
+def test_what_the_widgets_send_is_declared():
+    assert words(r'(?:send_msg|give)\(\{type: "([^"]+)"', WIDGETS) == FROM_WIDGETS.keys()
 
 
 def test_what_the_server_sends_is_declared_and_read():
@@ -42,6 +53,6 @@ def test_what_the_server_sends_is_declared_and_read():
     sent = {word.arg for call in calls for word in call.keywords if word.arg}
     widgets = SERVER[ROOT / "app/widgets/view.py"] + SERVER[ROOT / "app/widgets/changes.py"]
     sent |= words(r'message\["(\w+)"\]|_send_msg\(\{"(\w+)"|first = \{"(\w+)"', widgets)
-    sent |= words(r'(?m)^ +"(\w+)": ', SERVER[ROOT / "app/commands/history.py"])
-    assert sent == TO_BROWSER.keys()
+    sent |= words(r'(?m)^ +"(\w+)": ', SERVER[ROOT / "app/document/recording.py"])
+    assert sent | PARTS.keys() == TO_BROWSER.keys()
     assert words(r'"(\w+)" in message|message\.(\w+)', SCRIPTS) >= TO_BROWSER.keys()

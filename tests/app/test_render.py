@@ -2,7 +2,6 @@
 
 import base64
 import gzip
-import inspect
 import json
 import re
 import shlex
@@ -21,13 +20,23 @@ import cutcell_viewers
 from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell.runtime.progress import silent
+from cutcell_app.features import sweep
+from cutcell_app.features.learn.lesson import built_in
 from cutcell_app.files.table_export import save_numbers
-from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
-from cutcell_app.render import scene as describing
-from cutcell_app.render.options import READERS
-from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
-from cutcell_app.scenes import sweep
-from cutcell_app.state.tour import TOUR
+from cutcell_app.headless import (
+    VIEWS,
+    Choices,
+    Picture,
+    bone_index,
+    clip_named,
+    describe,
+    order,
+    state_of,
+)
+from cutcell_app.headless import scene as describing
+from cutcell_app.headless.flags import CHOICES, PICTURE, SETTINGS
+from cutcell_app.headless.lesson_page import STOPS
+from cutcell_app.headless.options import READERS
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig
@@ -81,7 +90,7 @@ def drawn(monkeypatch):
         orders.append(order)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr("cutcell_viewers.worker.draw_apart", remember)
+    monkeypatch.setattr("cutcell_viewers.process.draw_isolated", remember)
     return orders
 
 
@@ -132,11 +141,14 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
         "--view",
         "back",
         "--error",
+        "--blending",
+        "dual",
     ]
     result = run(demo_path("robot"), tmp_path / "a.png", "--bone", bone, *options)
     assert result.exit_code == 0, result.stderr
     last = drawn[-1]
     assert last.description.pose is not None
+    assert last.description.blending == "dual"
     assert not last.description.actors["bones"].visible
     assert not last.legend
     assert last.direction == VIEWS["back"]
@@ -208,7 +220,7 @@ def test_no_wave_begins_at_a_bone_that_moves_nothing(rig):
     skeleton = replace(rig.skeleton, deform=[True, False, True])
     partial = replace(rig, skeleton=skeleton, weights=None)
     with pytest.raises(ParameterError, match="elbow"):
-        check(partial, Choices("distance", bone="elbow", sweep="wave"))
+        state_of(partial, Choices("distance", bone="elbow", sweep="wave"))
 
 
 def test_a_finding_is_seen_from_where_it_is_asked_for(drawn, tmp_path):
@@ -262,7 +274,7 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.png", ("--cut", "w"), "cut must be x, y or z"),
         ("a.png", ("--cut", "z=2"), "number from 0 to 1 after the ="),
         ("a.png", ("--face", "up"), "face must be one of"),
-        ("a.png", ("--keep", "all"), "cut_keeps must be one of half, face, slab"),
+        ("a.png", ("--keep", "all"), "cut_keeps must be one of 'half', 'face', 'slab'"),
         ("a.png", ("--layers", "mesh,bones"), "layer must be one of"),
         ("a.png", ("--color-by", "hue"), "edge_colors must be one of"),
         ("a.png", ("--slice", "q"), "such as z, z=0.5 or z=0.5:x"),
@@ -270,7 +282,8 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.png", ("--wave", "2"), "front must be a number from 0 to 1"),
         ("a.png", ("--measures", "near"), "measure must be one of 'straight', 'surface', 'voxel'"),
         ("a.png", ("--measures", "straight,surface,voxel,6,26"), "at most 4 measures"),
-        ("a.png", ("--panel", "pose", "--colors", "paint"), "pose_colors must be one of weights"),
+        ("a.png", ("--panel", "pose", "--colors", "paint"), "pose_colors must be one of 'weights'"),
+        ("a.png", ("--panel", "pose", "--blending", "cubic"), "blending must be one of 'linear'"),
         ("a.png", ("--connectivity", "7"), "connectivity"),
         ("a.png", ("--near", "3"), "near must be"),
         ("a.png", ("--panel", "check", "--finding", "gout"), 'has no finding "gout"'),
@@ -289,7 +302,7 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.jpg", ("--address", "?panel=graph", "--address", "?panel=weights"), ".pdf or .svg"),
         ("a.pdf", ("--address", "?panel=graph") * 7, "at most 6 panels"),
         ("a.pdf", ("--address", "?panel=graph") * 2 + ("--turntable",), "does not move"),
-        ("a.tga", (), "cannot be saved"),
+        ("a.tga", (), "not as .tga"),
         ("no/a.png", (), "no folder"),
     ],
 )
@@ -303,19 +316,19 @@ def test_what_cannot_be_drawn_is_told_in_one_sentence(drawn, tmp_path, out, opti
 
 
 def test_names_are_found_as_people_write_them(rig):
-    assert find_bone(rig, "elbow") == find_bone(rig, "ELBOW") == find_bone(rig, "Ｅlbow") == 1
+    assert bone_index(rig, "elbow") == bone_index(rig, "ELBOW") == bone_index(rig, "Ｅlbow") == 1
     with pytest.raises(ParameterError, match='nearest names are "elbow"'):
-        find_bone(rig, "elbo")
+        bone_index(rig, "elbo")
     with pytest.raises(ParameterError, match="there are"):
-        find_bone(rig, "xyz")
-    assert find_clip(rig, "wave") is find_clip(rig, "1") is rig.clips[0]
+        bone_index(rig, "xyz")
+    assert clip_named(rig, "wave") is clip_named(rig, "1") is rig.clips[0]
     with pytest.raises(ParameterError, match="no clips"):
-        find_clip(cutcell.Rig(rig.mesh, rig.skeleton), "wave")
+        clip_named(cutcell.Rig(rig.mesh, rig.skeleton), "wave")
 
 
 def test_an_error_needs_weights_to_tell_it_against(rig):
-    with pytest.raises(ParameterError, match="no weights of its own"):
-        check(rig.with_weights(None), Choices("pose", error=True))
+    with pytest.raises(ParameterError, match="no weights of its own to compare"):
+        state_of(rig.with_weights(None), Choices("pose", error=True))
 
 
 def test_the_error_of_a_clip_has_the_scale_of_the_whole_clip(rig, binding):
@@ -327,12 +340,16 @@ def test_the_error_of_a_clip_has_the_scale_of_the_whole_clip(rig, binding):
     moment = Choices("pose", clip="wave", error=True, time=0.5)
     still = order(rig, describe(rig, moment, binding=binding), moment)
     assert still.motion is None
+    dual = replace(choices, settings={"blending": "dual"})
+    assert describe(rig, dual, binding=binding).blending == "dual"
     assert not np.allclose(still.description.pose, scene.pose)
 
 
 @pytest.mark.parametrize("panel", ["graph", "distance", "weights"])
 def test_the_body_follows_a_clip_on_panels_where_it_rests_otherwise(rig, binding, panel):
-    scene = describe(rig, Choices(panel, clip="wave"), binding=binding)
+    choices = Choices(panel, clip="wave", settings={"blending": "dual"})
+    scene = describe(rig, choices, binding=binding)
+    assert scene.blending == "dual"
     assert {"body"} <= scene.actors.keys()
     assert all(actor.skin is not None for actor in scene.actors.values())
 
@@ -446,10 +463,11 @@ def test_an_address_opens_the_panel_and_the_settings_it_says(drawn, tmp_path):
     assert "ominant" in drawn[-1].description.legend.title
 
 
-def test_a_step_of_the_tour_is_drawn(drawn, tmp_path):
-    step = next(k for k, one in enumerate(TOUR) if one.look.choices.get("graph_resolution") == 20)
+def test_a_step_of_the_lesson_is_drawn(drawn, tmp_path):
+    steps = built_in().steps
+    step = next(k for k, one in enumerate(steps) if "weights_shown" in one.address)
     made_by_the_page = "?rig=biped&panel=weights&bone=hand.L&weights_shown=bone&step=3"
-    for query, title in ((f"?step={step + 1}", "Graph, R = 20"), (made_by_the_page, "hand.L")):
+    for query, title in ((f"?step={step + 1}", "chest"), (made_by_the_page, "hand.L")):
         result = run(demo_path("biped"), tmp_path / "a.png", "--address", query)
         assert result.exit_code == 0, result.stderr
         assert title in drawn[-1].description.legend.title
@@ -459,7 +477,7 @@ def test_a_step_of_the_tour_is_drawn(drawn, tmp_path):
     "options",
     [
         ("--address", "?panel=graph&kitchen=1"),
-        ("--address", "?corrections=abc"),
+        ("--address", "?edits=abc"),
         ("--camera", "1,2,3"),
         ("--camera", "1,2,3,0,0,0", "--view", "back"),
     ],
@@ -477,10 +495,10 @@ def test_a_view_of_a_finding_is_seen_from_there(drawn, tmp_path):
         assert np.sign(away[2]) == np.sign(VIEWS[view][2])
 
 
-def test_each_flag_is_a_choice_a_setting_or_asked_for_of_the_picture():
+def test_each_flag_is_a_choice_a_setting_or_an_option_of_the_picture():
     assert CHOICES.keys() < {field.name for field in fields(Choices)}
     assert SETTINGS.keys() == READERS.keys()
-    assert PICTURE.keys() <= inspect.signature(order).parameters.keys()
+    assert PICTURE.keys() == {field.name for field in fields(Picture)}
 
 
 def test_an_html_file_is_an_interactive_page(tmp_path):
@@ -514,6 +532,51 @@ def test_an_interactive_page_refuses_what_it_does_not_follow(options, tmp_path):
     result = run(tmp_path / "arm.glb", tmp_path / "arm.html", *options)
     assert result.exit_code == 2
     assert not (tmp_path / "arm.html").exists()
+
+
+@pytest.mark.slow
+def test_a_lesson_is_written_as_one_file(tmp_path):
+    (tmp_path / "steps.md").write_text(STEPS, encoding="utf-8")
+    out = tmp_path / "lesson.html"
+    source = str(tmp_path / "steps.md")
+    result = CliRunner().invoke(app, ["render", "--lesson", str(out), "--lesson-from", source])
+    assert result.exit_code == 0, result.output
+    page = out.read_text(encoding="utf-8")
+    scenes = json.loads(unpacked(page, "scenes"))
+    views = scenes["records"][0]["views"]
+    assert list(views) == ["ask", "show", "offer 0", *(f"alpha={a}" for a in STOPS["alpha"])]
+    assert [views[name]["values"]["alpha"]["value"] for name in ("ask", "alpha=1.0")] == [0.25, 1]
+    assert views["offer 0"]["pressed"] == [True]
+    assert "<p>How far?</p>" in page
+    assert page.count("data:image/jpeg") == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (("--lesson", "lesson.png"), "--lesson lesson.html"),
+        (("--lesson-from", "steps.md"), "--lesson lesson.html"),
+        (("--lesson", "lesson.html", "--bone", "head"), "leave out bone"),
+        (("--lesson", "lesson.html", "--lesson-from", "nowhere.md"), "nowhere.md"),
+        ((), "cutcell render character.glb picture.png"),
+    ],
+)
+def test_a_lesson_is_refused_with_what_it_does_not_follow(options, text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, ["render", *options])
+    assert result.exit_code == 2
+    assert text in " ".join(result.stderr.split())
+
+
+STEPS = """---
+title: Falloff
+question: How far?
+address: rig=rabbit&resolution=16&panel=weights&bone=chest&falloff=paper&alpha=0.25
+answer: {kind: number, expected: 2, tolerance: 1}
+offers: {Animation: falloff=rig}
+---
+α is {alpha}.
+"""
 
 
 def unpacked(page, name):

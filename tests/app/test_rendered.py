@@ -2,8 +2,8 @@
 
 import pytest
 
-from cutcell_app.commands.look import pick_vertex
-from cutcell_app.commands.rendered import MAX_SIDE, MAX_TILES, _frame_options
+from cutcell_app.document.look import pick_vertex
+from cutcell_app.shell.rendered import MAX_SIDE, MAX_TILES, _frame_options
 
 
 def message(**changes):

@@ -5,20 +5,23 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell.editing.corrections import JointCorrection
+from cutcell.editing import Computed, Filled, JointEdit, Layer, Mask, Painted
 from cutcell.rig import Rig, Skeleton
-from cutcell_app.commands import correct, export, keys, loading, structure
-from cutcell_app.panels.structure import NOTHING
-from cutcell_app.panels.structure import structure as controls
+from cutcell_app.document import loading
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.features.correct import structure
+from cutcell_app.features.correct.structure_controls import NOTHING, STRUCTURE
+from cutcell_app.shell import export, keys
+from cutcell_app.widgets.controls import draw
 from tests.viewers.arm import arm_rig
 
 
 def chain(names=("a", "b", "c")):
-    """Corrections that give a mesh a chain of joints along x."""
+    """Edits that give a mesh a chain of joints along x."""
     above = ["", *names[:-1]]
-    return cutcell.Corrections(
+    return cutcell.Edits(
         {
-            name: JointCorrection(added=True, parent=parent, position=(0.3 * k, 0.0, 0.0))
+            name: JointEdit(added=True, parent=parent, position=(0.3 * k, 0.0, 0.0))
             for k, (name, parent) in enumerate(zip(names, above, strict=True))
         }
     )
@@ -28,7 +31,7 @@ def chain(names=("a", "b", "c")):
 def fitted(session, loop):
     session.state.resolution = 16
     loading.show_rig(session, Rig(arm_rig().mesh, Skeleton([], []), name="statue"))
-    loop.run_until(lambda: session.state.bare_graph is not None)
+    loop.run_until(lambda: session.state.built_graph is not None)
     correct.correct(session, chain())
     rebound(session, loop)
     session.state.mirrored = False
@@ -37,7 +40,7 @@ def fitted(session, loop):
 
 
 def rebound(session, loop):
-    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
 
 
 def hierarchy(session):
@@ -77,30 +80,33 @@ def test_behind_a_last_joint_another_one_begins(fitted, loop):
 
 def test_what_hung_on_a_removed_joint_hangs_on_its_parent(fitted, loop):
     state = fitted.state
-    held = {0: cutcell.PartCorrection("glued", "b")}
-    vertices = {3: {"a": 0.25, "b": 0.75}, 4: {"c": 1.0}}
-    correct.correct(fitted, cutcell.Corrections(chain().joints, held, vertices))
+    rigid = Layer(Filled({"b": 1.0}), Mask(part=0))
+    rows = Layer(Painted([3, 4], ["a", "b", "c"], [[0.25, 0.75, 0], [0, 0, 1]]))
+    reach = Layer(Computed(gain={"b": 2.0, "c": 3.0}))
+    correct.correct(fitted, cutcell.Edits(chain().joints, layers=[reach, rigid, rows]))
     state.joint = 1
     structure.remove(fitted)
     rebound(fitted, loop)
     assert hierarchy(fitted) == {"a": "", "c": "a"}
     assert state.rig.skeleton.names[state.joint] == "a"
-    assert state.corrections.parts[0].joint == "a"
-    assert state.corrections.vertices == {3: {"a": 1.0}, 4: {"c": 1.0}}
+    reach, rigid, rows = (layer.content for layer in state.edits.layers)
+    assert reach == Computed(gain={"c": 3.0})
+    assert rigid == Filled({"a": 1.0})
+    assert rows == Painted([3, 4], ["a", "c"], [[1, 0], [0, 1]])
     assert state.weights.shape[1] == 2
 
 
 def test_a_root_leaves_roots_and_the_last_joint_stays(fitted, loop):
     state = fitted.state
-    vertices = {3: {"a": 1.0}, 4: {"a": 0.5, "c": 0.5}}
-    parts = {0: cutcell.PartCorrection("glued", "a")}
-    correct.correct(fitted, cutcell.Corrections(chain().joints, parts, vertices))
+    rigid = Layer(Filled({"a": 1.0}), Mask(part=0))
+    rows = Layer(Painted([3, 4], ["a", "c"], [[1, 0], [0.5, 0.5]]))
+    correct.correct(fitted, cutcell.Edits(chain().joints, layers=[rigid, rows]))
     state.joint = 0
     structure.remove(fitted)
     rebound(fitted, loop)
     assert hierarchy(fitted) == {"b": "", "c": "b"}
-    assert state.corrections.vertices == {4: {"c": 1.0}}  # nobody takes over what it had
-    assert not state.corrections.parts
+    (layer,) = state.edits.layers  # no joint takes over the others
+    assert layer.content == Painted([4], ["c"], [[1]])
     state.joint = 1
     structure.remove(fitted)
     structure.remove(fitted)
@@ -120,10 +126,10 @@ def test_a_joint_hangs_on_another_but_never_on_what_hangs_on_it(fitted, loop):
     rebound(fitted, loop)
     assert hierarchy(fitted)["c"] == ""
     state.joint = 0
-    before = state.corrections
+    before = state.edits
     structure.hang_on(fitted, "b")  # no menu offers that
     assert "has a cycle" in state.message[1]
-    assert state.corrections == before
+    assert state.edits == before
 
 
 def test_the_other_side_gets_the_same(fitted, loop):
@@ -131,14 +137,14 @@ def test_the_other_side_gets_the_same(fitted, loop):
     middle = state.rig.mesh.bounds.mean(axis=0)
     places = {"hips": 0.0, "left": 0.2, "right": -0.2}
     sides = {
-        name: JointCorrection(
+        name: JointEdit(
             added=True,
             parent="" if name == "hips" else "hips",
             position=tuple((middle + np.array([aside, abs(aside) / 4, 0])).tolist()),
         )
         for name, aside in places.items()
     }
-    correct.correct(fitted, cutcell.Corrections(sides))
+    correct.correct(fitted, cutcell.Edits(sides))
     state.param.update(mirrored=True, joint=1)
     structure.add(fitted)
     assert set(hierarchy(fitted)) == {"hips", "left", "left_1", "right", "right_1"}
@@ -160,7 +166,7 @@ def test_the_other_side_gets_the_same(fitted, loop):
 def test_the_controls_show_and_change_it(fitted, loop, tmp_path):
     state = fitted.state
     state.joint = 2
-    panel = controls(fitted)
+    panel = draw(fitted, STRUCTURE)
     (menu,) = panel.select(pmui.Select)
     add, remove = panel.select(pmui.Button)
     assert menu.options == [NOTHING, "a", "b"]
@@ -178,9 +184,9 @@ def test_the_controls_show_and_change_it(fitted, loop, tmp_path):
     export.export_bound(fitted, lambda name, content: got.append((name, content)))
     loop.run_until(lambda: got)
     (tmp_path / got[0][0]).write_bytes(got[0][1])
-    found = cutcell.load(tmp_path / got[0][0]).skeleton
-    assert found.names == state.rig.skeleton.names
-    np.testing.assert_array_equal(found.parents, state.rig.skeleton.parents)
+    result = cutcell.load(tmp_path / got[0][0]).skeleton
+    assert result.names == state.rig.skeleton.names
+    np.testing.assert_array_equal(result.parents, state.rig.skeleton.parents)
 
 
 def test_joints_of_a_file_are_added_removed_and_hung_elsewhere(bound, loop):
@@ -190,13 +196,13 @@ def test_joints_of_a_file_are_added_removed_and_hung_elsewhere(bound, loop):
     structure.add(bound)
     rebound(bound, loop)
     assert hierarchy(bound)["wrist"] == "elbow_1"
-    assert state.corrections.joints["wrist"] == JointCorrection(parent="elbow_1")
+    assert state.edits.joints["wrist"] == JointEdit(parent="elbow_1")
     state.joint = state.rig.skeleton.names.index("elbow")
     correct.rename(bound, state.joint, "bend")
     structure.remove(bound)
     rebound(bound, loop)
     assert hierarchy(bound) == {"shoulder": "", "elbow_1": "shoulder", "wrist": "elbow_1"}
-    assert state.corrections.removed == ("elbow",)
+    assert state.edits.removed == ("elbow",)
     assert state.rig.skeleton.names[state.joint] == "shoulder"
     state.joint = state.rig.skeleton.names.index("wrist")
     structure.hang_on(bound, "shoulder")
@@ -217,4 +223,4 @@ def test_joints_that_share_a_name_are_refused(bound, loop):
     structure.hang_on(bound, twice[0])
     assert "wo joints are called" in state.message[1]
     structure.remove(bound)
-    assert not state.corrections
+    assert not state.edits

@@ -1,12 +1,36 @@
 """Where the page is served."""
 
 import socket
+import subprocess
+import sys
 
 import pytest
 
 from cutcell_app.serve import allowed_hosts, free_port
+from tests.signals import reset_signals
 
 pytestmark = pytest.mark.slow
+
+STOPPED_IN_A_FINALISER = """
+import os, signal, weakref
+from cutcell_app import serve
+
+class Thing:
+    pass
+
+def stop():
+    thing = Thing()
+    reference = weakref.ref(thing, lambda _: os.kill(os.getpid(), signal.SIGTERM) or sum(range(9)))
+    del thing
+
+def begin(*arguments, begin=serve.begin, **options):
+    server = begin(*arguments, **options)
+    server.io_loop.add_callback(stop)
+    return server
+
+serve.begin = begin
+serve.serve(None, port=0, show=False)
+"""
 
 
 @pytest.fixture
@@ -52,3 +76,8 @@ def test_a_machine_that_does_not_know_its_own_name_serves_all_the_same(monkeypat
 
     monkeypatch.setattr(socket, "getaddrinfo", unknown)
     assert "localhost:1" in allowed_hosts("0.0.0.0", 1)
+
+
+def test_a_signal_within_a_finaliser_ends_the_server():
+    program = [sys.executable, "-c", STOPPED_IN_A_FINALISER]
+    subprocess.run(program, check=True, timeout=240, preexec_fn=reset_signals)

@@ -63,9 +63,11 @@ def test_a_notebook_without_widgets_has_the_page_in_a_frame(notebook, missing, t
     assert framed(frame) == (tmp_path / "arm.html").read_text(encoding="utf-8")
 
 
-def test_a_notebook_has_a_widget_with_joint_and_vertex(notebook, tmp_path):
+def test_a_notebook_has_a_widget_with_joint_and_vertex(notebook, monkeypatch, tmp_path):
     rig = arm_rig()
     widget = cutcell.show(rig, cutcell.bind(rig, 16))
+    assert list(widget._repr_mimebundle_()[0]) == ["text/html"], "a program runs the notebook"
+    monkeypatch.setattr("cutcell_app.headless.notebook_widget.is_attended", lambda: True)
     data, _ = widget._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data
     widget.save(tmp_path / "arm.html")

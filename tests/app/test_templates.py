@@ -5,36 +5,27 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell.rig import Rig, Skeleton
-from cutcell_app.commands import correct, export, keys, loading, moving, templates
-from cutcell_app.panels.joints import joints
-from cutcell_app.panels.templates import CHANGED, NONE, chosen_template, skeleton_menu
-from cutcell_app.scenes import resolve
-from cutcell_app.state.corrections import to_text
-from tests.viewers.arm import arm_rig
-
-
-def bare_arm():
-    return Rig(arm_rig().mesh, Skeleton([], []), name="statue")
-
-
-def settled(session, loop):
-    loop.run_until(lambda: not session.tasks.running)
-    assert session.state.message is None, session.state.message
-
-
-@pytest.fixture
-def bare(session, loop):
-    session.state.resolution = 16
-    loading.show_rig(session, bare_arm())
-    loop.run_until(lambda: session.state.bare_graph is not None)
-    settled(session, loop)
-    return session
+from cutcell_app.document import loading
+from cutcell_app.features.correct import commands as correct
+from cutcell_app.features.correct import moving, templates
+from cutcell_app.features.correct.choices import to_text
+from cutcell_app.features.correct.joint_controls import JOINTS
+from cutcell_app.features.correct.template_controls import (
+    CHANGED,
+    NONE,
+    SKELETON,
+    chosen_template,
+)
+from cutcell_app.features.scenes import resolve
+from cutcell_app.shell import export, keys
+from cutcell_app.widgets.controls import draw
+from tests.app.loop import settled
+from tests.viewers.arm import arm_rig, bare_arm
 
 
 @pytest.fixture
 def fitted(bare, loop):
-    bare.section = skeleton_menu(bare)
+    bare.section = draw(bare, SKELETON)
     (bare.menu,) = bare.section.select(pmui.Select)
     bare.menu.value = "Chain"
     loop.run_until(lambda: bare.state.binding is not None)
@@ -70,7 +61,7 @@ def test_its_joints_can_be_dragged(fitted, loop):
 def test_undo_takes_it_out_and_redo_puts_it_in(fitted, loop):
     state = fitted.state
     keys.act(fitted, "undo")
-    loop.run_until(lambda: state.bare_graph is not None)
+    loop.run_until(lambda: state.built_graph is not None)
     settled(fitted, loop)
     assert state.bare
     assert state.binding is None
@@ -88,10 +79,10 @@ def test_the_menu_takes_it_out_and_puts_another_in(fitted, loop):
     loop.run_until(lambda: state.weights is not None and state.weights.shape[1] == 12)
     settled(fitted, loop)
     fitted.menu.value = NONE
-    loop.run_until(lambda: state.bare_graph is not None)
+    loop.run_until(lambda: state.built_graph is not None)
     settled(fitted, loop)
     assert state.bare
-    assert not state.corrections
+    assert not state.edits
     assert state.panel == "graph"
 
 
@@ -105,8 +96,8 @@ def test_what_cannot_be_fitted_is_told(fitted, loop):
 
 def test_an_address_brings_it_back(fitted, session, loop):
     state, joints = fitted.state, fitted.state.rig.skeleton.joints
-    said = to_text(state.corrections)
-    fitted.arrival = {"corrections": said, "bone": "bone.4"}
+    said = to_text(state.edits)
+    fitted.arrival = {"edits": said, "bone": "bone.4"}
     loading.show_rig(fitted, bare_arm())
     loop.run_until(lambda: state.binding is not None)
     settled(fitted, loop)
@@ -121,17 +112,17 @@ def test_export_writes_it(fitted, loop, tmp_path):
     loop.run_until(lambda: got)
     name, content = got[0]
     (tmp_path / name).write_bytes(content)
-    found = cutcell.load(tmp_path / name)
+    result = cutcell.load(tmp_path / name)
     assert name.endswith(".glb")
-    assert found.skeleton.names == fitted.state.rig.skeleton.names
-    np.testing.assert_allclose(found.skeleton.joints, fitted.state.rig.skeleton.joints, atol=1e-5)
-    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-5)
+    assert result.skeleton.names == fitted.state.rig.skeleton.names
+    np.testing.assert_allclose(result.skeleton.joints, fitted.state.rig.skeleton.joints, atol=1e-5)
+    np.testing.assert_allclose(result.weights.sum(axis=1), 1, atol=1e-5)
 
 
 def test_a_skeleton_of_ones_own_is_called_so(fitted):
-    joints = dict(fitted.state.corrections.joints)
+    joints = dict(fitted.state.edits.joints)
     joints["tip"] = joints.pop("bone.5")
-    fitted.state.corrections = cutcell.Corrections(joints)
+    fitted.state.edits = cutcell.Edits(joints)
     assert chosen_template(fitted.state) == fitted.menu.value == CHANGED
 
 
@@ -143,7 +134,7 @@ def test_the_menu_is_only_for_meshes_without_a_skeleton(fitted, loop):
 
 
 def joint_fields(session):
-    return {field.label: field for field in pmui.Column(joints(session)).select(pmui.TextInput)}
+    return {field.label: field for field in draw(session, JOINTS).select(pmui.TextInput)}
 
 
 def test_a_joint_is_renamed(fitted, loop):
@@ -165,7 +156,7 @@ def test_a_joint_is_renamed(fitted, loop):
         assert field.value == "elbow"
     keys.act(fitted, "undo")
     loop.run_until(lambda: state.binding is not None)
-    loop.run_until(lambda: not fitted.tasks.running)
+    loop.rest(fitted)
     assert state.rig.skeleton.names[1] == "bone.2"
 
 
@@ -173,19 +164,21 @@ def test_a_joint_of_a_file_is_renamed(bound, loop):
     state = bound.state
     correct.correct(
         bound,
-        cutcell.Corrections(
-            {"elbow": cutcell.JointCorrection(gain=2.0)},
-            {0: cutcell.PartCorrection("glued", "elbow")},
-            {3: {"elbow": 1.0}},
+        cutcell.Edits(
+            layers=[
+                cutcell.Layer(cutcell.Computed(gain={"elbow": 2.0})),
+                cutcell.Layer(cutcell.Filled({"elbow": 1}), cutcell.Mask(part=0)),
+                cutcell.Layer(cutcell.Painted([3], ["elbow"], [[1]])),
+            ]
         ),
     )
-    loop.run_until(lambda: not bound.tasks.running)
+    loop.rest(bound)
     correct.rename(bound, 1, "bend")
-    loop.run_until(lambda: state.binding is not None and not bound.tasks.running)
+    loop.run_until(lambda: state.binding is not None and not bound.work.busy)
     assert state.rig.skeleton.names == ("shoulder", "bend", "wrist")
-    assert state.corrections.joints == {"bend": cutcell.JointCorrection(gain=2.0, was="elbow")}
-    assert state.corrections.parts[0].joint == "bend"
-    assert state.corrections.vertices[3] == {"bend": 1.0}
+    assert state.edits.joints == {"bend": cutcell.JointEdit(was="elbow")}
+    assert [one.content.joints_named() for one in state.edits.layers] == [("bend",)] * 3
     assert state.rig.weights is not None
     correct.rename(bound, 1, "elbow")
-    assert state.corrections.joints == {"elbow": cutcell.JointCorrection(gain=2.0)}
+    assert state.edits.joints == {}
+    assert state.edits.reach.gain == {"elbow": 2.0}

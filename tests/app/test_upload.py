@@ -14,13 +14,6 @@ from cutcell_app.files.upload_cache import UploadCache
 
 
 @pytest.fixture
-def keep(tmp_path):
-    keep = UploadCache(Storage(tmp_path))
-    yield keep
-    keep.close()
-
-
-@pytest.fixture
 def receiver(keep):
     received, refused = [], []
     receiver = Receiver(keep, "a page", lambda group: received.append(group.paths), refused.append)

@@ -3,7 +3,7 @@
 
 def read_tables(text):
     """Return {title: [{column: cell}]} and check that every row fits its header."""
-    found = {}
+    result = {}
     title, header = None, None
     for line in text.splitlines():
         if line.startswith("### "):
@@ -12,9 +12,9 @@ def read_tables(text):
             cells = [cell.strip() for cell in line.strip("|").split("|")]
             if header is None:
                 header = cells
-                found[title] = []
+                result[title] = []
                 continue
             assert len(cells) == len(header), line
             if not set(line) <= set("|-: "):
-                found[title].append(dict(zip(header, cells, strict=True)))
-    return found
+                result[title].append(dict(zip(header, cells, strict=True)))
+    return result

@@ -48,10 +48,10 @@ def test_coarse_against_fine(small, capsys, monkeypatch):
     tables = read_tables(capsys.readouterr().out)
     (rows,) = [rows for title, rows in tables.items() if title.startswith("R = 8 against")]
     assert [row["rig"] for row in rows] == ["bar", "ahead of voxel", "ahead of voxel_unirig"]
-    ours, theirs = (
+    computed, reference = (
         np.array(rows[0][head].split(" / "), float) for head in ("cutcell_any, 8", "voxel, 16")
     )
-    assert rows[1]["cutcell_any, 8"] == " / ".join(str(int(less)) for less in ours < theirs)
+    assert rows[1]["cutcell_any, 8"] == " / ".join(str(int(less)) for less in computed < reference)
     assert rows[1]["voxel, 16"] == "of 1"
 
 
@@ -96,9 +96,9 @@ def test_the_edge_reaches_the_mesher(tmp_path, monkeypatch):
     script.write_text("import sys; print('{\"seconds\": ' + sys.argv[3] + ', \"cells\": 1}')")
     monkeypatch.setattr("benchmarks.meshers.SCRIPT", script)
     (character,) = graph_construction.load_characters([DEMO])
-    found = graph_construction.attempt("any", character, sys.executable, 60, 0.125)
-    assert found == {"seconds": 0.125, "cells": 1}
-    mixed = graph_construction._cell([found, "over 1 s"], [0.0625, 1.0])
+    result = graph_construction.attempt("any", character, sys.executable, 60, 0.125)
+    assert result == {"seconds": 0.125, "cells": 1}
+    mixed = graph_construction._cell([result, "over 1 s"], [0.0625, 1.0])
     assert mixed == "125 ms (2.0x, 1 of 2 rigs)"
 
 

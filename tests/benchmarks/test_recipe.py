@@ -19,12 +19,12 @@ def torus():
 
 
 def casters():
-    found = [recipe.hits_embree]
+    result = [recipe.hits_embree]
     try:
         import open3d  # noqa: F401
     except (ImportError, OSError):
-        return found
-    return [*found, recipe.hits_open3d]
+        return result
+    return [*result, recipe.hits_open3d]
 
 
 def edges_by_place(nodes, edges, anchor):
@@ -39,14 +39,14 @@ def edges_by_place(nodes, edges, anchor):
 @pytest.mark.parametrize("resolution", [8, 24])
 def test_the_same_graph(cast, resolution):
     mesh = torus()
-    ours = build_graph(mesh, resolution, connectivity=6)
-    theirs = recipe.build_graph(mesh, resolution, cast)
-    assert len(theirs.nodes) == len(ours.nodes)
-    assert len(theirs.edges) == len(ours.edges)
-    assert edges_by_place(theirs.nodes, theirs.edges, ours.nodes) == {
-        tuple(sorted(edge)) for edge in ours.edges.tolist()
+    computed = build_graph(mesh, resolution, connectivity=6)
+    reference = recipe.build_graph(mesh, resolution, cast)
+    assert len(reference.nodes) == len(computed.nodes)
+    assert len(reference.edges) == len(computed.edges)
+    assert edges_by_place(reference.nodes, reference.edges, computed.nodes) == {
+        tuple(sorted(edge)) for edge in computed.edges.tolist()
     }
-    assert theirs.lengths.sum() == pytest.approx(ours.lengths.sum(), rel=1e-5)
+    assert reference.lengths.sum() == pytest.approx(computed.lengths.sum(), rel=1e-5)
 
 
 def test_the_same_distances_from_the_same_sources():
@@ -54,13 +54,13 @@ def test_the_same_distances_from_the_same_sources():
     joints = np.array([[0.33, 0, 0], [0, 0.33, 0.02], [-0.33, 0, 0]])
     skeleton = Skeleton((joints + 0.5) @ TURN.T, [-1, 0, 1])
     graph = build_graph(mesh, 16, connectivity=6)
-    ours = bone_distances(graph, skeleton)
-    count = len(ours.bones.joint)
+    computed = bone_distances(graph, skeleton)
+    count = len(computed.bones.joint)
     augmented = recipe.with_bones(
-        graph.csr(), ours.sources.bone, ours.sources.node, ours.sources.distance, count
+        graph.csr(), computed.sources.bone, computed.sources.node, computed.sources.distance, count
     )
-    theirs = recipe.scipy_distances(augmented, count, graph.vertex_node)
-    np.testing.assert_allclose(ours.joint, theirs, rtol=1e-6, atol=1e-9)
+    reference = recipe.scipy_distances(augmented, count, graph.vertex_node)
+    np.testing.assert_allclose(computed.joint, reference, rtol=1e-6, atol=1e-9)
 
 
 @pytest.mark.nightly
@@ -68,10 +68,10 @@ def test_nearly_the_same_weights():
     mesh = torus()
     joints = np.array([[0.33, 0, 0], [0, 0.33, 0.02], [-0.33, 0, 0]])
     rig = Rig(mesh, Skeleton((joints + 0.5) @ TURN.T, [-1, 0, 1]))
-    ours = bind(rig, 24, connectivity=6, falloff="paper").weights
-    theirs = recipe.bind(rig, 24)
-    np.testing.assert_allclose(theirs.sum(axis=1), 1)
-    assert np.abs(ours - theirs).mean() < 0.01
+    computed = bind(rig, 24, connectivity=6, falloff="paper").weights
+    reference = recipe.bind(rig, 24)
+    np.testing.assert_allclose(reference.sum(axis=1), 1)
+    assert np.abs(computed - reference).mean() < 0.01
 
 
 def test_far_parts_follow_their_nearest_bones():

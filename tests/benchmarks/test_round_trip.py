@@ -94,8 +94,8 @@ def test_every_format_gives_back_what_was_saved(tmp_path, name, capsys):
     if path.suffix != ".vrm":
         expected["vrm"] = "-"
     if name == "sparse.glb":  # its two views more are empty shells now: numbers never change
-        told = "equal (2 information UNUSED_OBJECT)"
-        expected |= {"glb": told, "gltf": told}
+        reports = "equal (2 information UNUSED_OBJECT)"
+        expected |= {"glb": reports, "gltf": reports}
     if name == "coloured.obj":  # its texture coordinates are kept, though it has no image
         unused = "equal (1 information UNUSED_OBJECT)"
         expected |= {"glb": unused, "gltf": unused}
@@ -170,8 +170,8 @@ def test_data_of_the_document_that_differs_is_told(tmp_path):
     document["images"][0]["bufferView"] = normal["bufferView"]
     (tmp_path / "b.gltf").write_text(json.dumps(document))
     other = cutcell.load(tmp_path / "b.gltf")
-    told = list(round_trip.differences(rig, other, ".gltf"))
-    assert told == [f"accessor {primitive['attributes']['NORMAL']}", "images"]
+    reports = list(round_trip.differences(rig, other, ".gltf"))
+    assert reports == [f"accessor {primitive['attributes']['NORMAL']}", "images"]
 
 
 def test_all_files_at_hand_are_tried():

@@ -63,9 +63,9 @@ def test_accuracy(capsys, tmp_path):
     out = tmp_path / "accuracy.md"
     given = ["--resolutions", "6", "8", "--shapes", "ball", "box", "L-bar"]
     accuracy.main([*given, "--markdown", str(out)])
-    found = read_tables(capsys.readouterr().out)
-    assert found == read_tables(out.read_text())
-    rows = found["Accuracy of distances"]
+    result = read_tables(capsys.readouterr().out)
+    assert result == read_tables(out.read_text())
+    rows = result["Accuracy of distances"]
     assert [row["connectivity"] for row in rows[:2]] == ["6", "26"]
     assert {"ball", "box", "L-bar", "**all**"} == {row["shape"] for row in rows}
 
@@ -103,13 +103,13 @@ def test_growth(small, capsys, tmp_path):
     out = tmp_path / "growth.md"
     sizes = ["--resolutions", "8", "16", "--faces", "80", "--bones", "2"]
     growth.main([*sizes, "--rig", small, "--markdown", str(out)])
-    found = read_tables(capsys.readouterr().out)
-    assert len(found) == 3
-    rows = found["Growth with the resolution"]
+    result = read_tables(capsys.readouterr().out)
+    assert len(result) == 3
+    rows = result["Growth with the resolution"]
     assert [row["resolution"] for row in rows] == ["8", "16", "**slope**"]
     assert all(row["peak memory"].endswith(" MB") for row in rows[:-1])
-    assert found["Growth with the faces"][0]["faces"] == "80"
-    assert found["Growth with the bones"][0]["bones"] == "2"
+    assert result["Growth with the faces"][0]["faces"] == "80"
+    assert result["Growth with the bones"][0]["bones"] == "2"
 
 
 def test_growth_says_what_failed(capsys):

@@ -38,8 +38,8 @@ def test_in_a_straight_tube_paths_are_straight():
     begin, end = (
         np.column_stack([np.full(20, t), rng.uniform(-0.06, 0.06, (20, 2))]) for t in (0.0, 2.0)
     )
-    found = truth.shortest_through_discs(STRAIGHT, begin, end, 16, 500)
-    np.testing.assert_allclose(found, np.linalg.norm(end - begin, axis=1), rtol=1e-9)
+    result = truth.shortest_through_discs(STRAIGHT, begin, end, 16, 500)
+    np.testing.assert_allclose(result, np.linalg.norm(end - begin, axis=1), rtol=1e-9)
 
 
 def test_around_a_torus_paths_touch_its_inner_side():
@@ -49,10 +49,10 @@ def test_around_a_torus_paths_touch_its_inner_side():
     # In the plane of the circle: a tangent, an arc, a tangent.
     free = np.arccos(inner / 0.35)
     expected = 2 * np.sqrt(0.35**2 - inner**2) + inner * (np.pi - 2 * free)
-    found = truth.shortest_through_discs(tube, begin, end)
-    assert found[0] == pytest.approx(expected, rel=3e-4)
+    result = truth.shortest_through_discs(tube, begin, end)
+    assert result[0] == pytest.approx(expected, rel=3e-4)
     finer = truth.shortest_through_discs(tube, begin, end, 4 * truth.SECTIONS, 4 * truth.STEPS)
-    assert abs(finer[0] - expected) < 0.2 * abs(found[0] - expected)
+    assert abs(finer[0] - expected) < 0.2 * abs(result[0] - expected)
 
 
 @pytest.mark.parametrize("name", ["ball", "box", "L-bar"])

@@ -25,10 +25,15 @@ def test_a_changed_character_is_listed_with_its_cause(small, capsys, tmp_path, m
     capsys.readouterr()
     weight_changes.main(["compare", str(tmp_path / "old"), str(tmp_path / "new")])
     sets = read_tables(capsys.readouterr().out)
-    assert [(row["joints"], row["changed"], row["better : worse"]) for row in sets["All sets"]] == [
-        ("known", "1", "0 : 1"),
-        ("fresh", "0", "0 : 0"),
+    columns = ("joints", "version", "better : worse")
+    assert [tuple(row[column] for column in columns) for row in sets["All sets"]] == [
+        ("known", "old", "0 : 0"),
+        ("known", "new", "0 : 1"),
+        ("fresh", "old", "0 : 0"),
+        ("fresh", "new", "0 : 0"),
     ] * 2
+    (row,) = sets["The worst characters"]
+    assert row["character"] == "small"
     (row,) = sets["rigs"]
     assert (row["character"], row["joints"]) == ("small", "known")
     assert row["differs first in"] == "bones and components"

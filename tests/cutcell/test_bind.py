@@ -42,8 +42,8 @@ def test_translation_and_scale_change_nothing(connectivity, leaf):
         lambda x: x / 64,
         lambda x: x * 8 + 2,
     ):
-        found = bind(moved(rig, change), 16, **options).weights
-        np.testing.assert_allclose(found, weights, atol=1e-9)
+        result = bind(moved(rig, change), 16, **options).weights
+        np.testing.assert_allclose(result, weights, atol=1e-9)
 
 
 @pytest.mark.parametrize("connectivity", [6, 26, "any"])
@@ -62,16 +62,16 @@ def test_numbering_changes_nothing(make, connectivity):
     turned = np.stack([np.roll(f, rng.integers(3)) for f in place[faces[shuffle]]])
     parents = np.array([np.argsort(swap)[p] if p >= 0 else -1 for p in skeleton.parents[swap]])
     other = Rig(TriangleMesh(vertices[order], turned), Skeleton(joints[swap], parents))
-    found = bind(other, 16, **options).weights
-    np.testing.assert_allclose(found, weights[order][:, swap], atol=1e-9)
+    result = bind(other, 16, **options).weights
+    np.testing.assert_allclose(result, weights[order][:, swap], atol=1e-9)
 
 
 def test_split_vertices_get_equal_weights():
     rig = figure()
     corners = rig.mesh.faces.ravel()
     split = TriangleMesh(rig.mesh.vertices[corners], np.arange(len(corners)).reshape(-1, 3))
-    found = bind(Rig(split, rig.skeleton), 16).weights
-    np.testing.assert_allclose(found, bind(rig, 16).weights[corners], atol=1e-12)
+    result = bind(Rig(split, rig.skeleton), 16).weights
+    np.testing.assert_allclose(result, bind(rig, 16).weights[corners], atol=1e-12)
 
 
 def test_mirrored_figures_have_mirrored_weights():
@@ -178,10 +178,10 @@ def test_the_stages_one_after_the_other_are_bind(demo_paths, method):
 
 def test_the_paper_keeps_all_influences_and_nothing_else_differs():
     rig = figure()
-    found = bind(rig, 16, method="paper")
-    assert (found.weights > 0).all()
+    result = bind(rig, 16, method="paper")
+    assert (result.weights > 0).all()
     options = dict(connectivity=6, leaf="point", falloff="paper", max_influences=None)
-    np.testing.assert_array_equal(found.weights, bind(rig, 16, **options).weights)
+    np.testing.assert_array_equal(result.weights, bind(rig, 16, **options).weights)
     few = bind(rig, 16, method="paper", max_influences=2).weights
     np.testing.assert_array_equal((few > 0).sum(axis=1), 2)
 
@@ -235,9 +235,9 @@ def test_joints_that_get_no_weight_are_named():
         (twins.skeleton, True),
         (Skeleton(joints, [-1, 0, 1, 2, 2], names, [True] * 4 + [False]), False),
     ):
-        found = bind(Rig(rig.mesh, skeleton), 16, max_influences=1)
-        assert not found.weights[:, 4].any()
-        assert any("twin" in warning for warning in found.warnings) == is_named
+        result = bind(Rig(rig.mesh, skeleton), 16, max_influences=1)
+        assert not result.weights[:, 4].any()
+        assert any("twin" in warning for warning in result.warnings) == is_named
 
 
 def test_characters_side_by_side_are_bound_as_if_alone():
@@ -264,3 +264,14 @@ def test_characters_side_by_side_are_bound_as_if_alone():
     assert cutcell.bind(both, 16).method.resolution == 16, "an R that is given stays"
     share = cutcell.explain(both, 0, method=small, distances=two.distances).joints[0]
     assert share.name in skeleton.names[:joints]
+
+
+def test_few_influences_follow_the_distances_of_many(demo_paths):
+    """A path leads through nodes that are nearer to other joints; there it must not be dropped."""
+    rig = cutcell.load(next(path for path in demo_paths if path.stem == "biped"))
+    method = cutcell.PAPER.with_options(resolution=16, connectivity="any", max_influences=8)
+    many = bind(rig, 16, method=method)
+    for most in (1, 2):
+        few = bind(rig, 16, method=method, max_influences=most, graph=many.graph)
+        pruned = cutcell.weights.keep_strongest(many.distances, many.weights, most, 0.0)
+        np.testing.assert_allclose(few.weights, pruned, atol=1e-12)

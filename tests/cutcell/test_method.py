@@ -43,13 +43,6 @@ def test_leaf_and_alpha_follow_the_falloff_unless_they_are_given():
     assert PAPER.with_options(alpha=0.1).with_options(falloff="paper").alpha == 0.1
 
 
-def test_only_the_rig_falloff_is_refined():
-    assert PAPER.refine == "none"
-    learned = ANIMATION.with_options(refine="learned")
-    assert learned.with_options(falloff="paper").refine == "none"
-    assert learned.with_options(max_influences=8).refine == "learned"
-
-
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
@@ -62,8 +55,6 @@ def test_only_the_rig_falloff_is_refined():
         ({"falloff": "soft"}, "falloff must be one of 'rig', 'paper', not 'soft'"),
         ({"falloff": "paper", "alpha": 2}, "alpha must be a number from 0 to 1, not 2"),
         ({"alpha": 0.5}, "alpha shapes the paper's falloff and has no effect with falloff='rig'"),
-        ({"refine": "some"}, "refine must be one of 'none', 'learned', not 'some'"),
-        ({"falloff": "paper", "refine": "learned"}, "refine='learned' has no effect with falloff"),
         ({"max_influences": 0}, "max_influences must be a whole number from 1 to 1,024, not 0"),
         ({"threshold": -1}, "threshold must be a number from 0 to 1, not -1"),
     ],
@@ -94,6 +85,8 @@ def test_the_types_of_options_name_all_there_are():
 def test_how_many_joints_are_measured_follows_from_the_method():
     assert PAPER.joints_needed is None
     assert PAPER.with_options(max_influences=8).joints_needed == 8
+    assert PAPER.with_options(max_influences=2).joints_needed == 8
+    assert PAPER.with_options(max_influences=9).joints_needed == 9
     assert ANIMATION.joints_needed == 3
     assert ANIMATION.with_options(max_influences=None).joints_needed is None
     assert (PAPER.reach_needed, ANIMATION.reach_needed) == (np.inf, 6)

@@ -171,17 +171,17 @@ def rignet(rng: Generator) -> Files:
 
 def npz(rng: Generator) -> Files:
     """Make an archive of damaged arrays, damaged members, or damaged itself."""
-    found = arrays()
+    result = arrays()
     for _ in range(int(rng.integers(0, 3))):
-        name = str(rng.choice(list(found)))
-        found[name] = damage.numbers(rng, found[name])
+        name = str(rng.choice(list(result)))
+        result[name] = damage.numbers(rng, result[name])
         if rng.random() < 0.1:
-            del found[name]
+            del result[name]
     packed = io.BytesIO()
     way = zipfile.ZIP_DEFLATED if rng.random() < 0.5 else zipfile.ZIP_STORED
     with zipfile.ZipFile(packed, "w", way) as archive:
-        broken = str(rng.choice([*found, *[""] * len(found)]))
-        for name, array in found.items():
+        broken = str(rng.choice([*result, *[""] * len(result)]))
+        for name, array in result.items():
             member = io.BytesIO()
             np.save(member, array)
             content = member.getvalue()

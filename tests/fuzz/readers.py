@@ -73,7 +73,7 @@ def check_files(folder: Path, files: Files, saved: bool = True) -> None:
     rig = _ours(lambda: cutcell.load(folder / next(iter(files))), [*files])
     if rig is None:
         return
-    assert all(isinstance(told, str) for told in rig.warnings)
+    assert all(isinstance(reports, str) for reports in rig.warnings)
     for clip in rig.clips:
         _ours(lambda clip=clip: clip.sample([0, clip.duration / 3, clip.duration]), [""])  # type: ignore[misc]
         assert len(clip.times) <= 3601

@@ -59,9 +59,9 @@ def test_the_command_prints_how_to_try_a_case_again(monkeypatch, capsys):
     with pytest.raises(SystemExit) as ended:
         harness.main(SELF)
     assert ended.value.code == 1
-    told = capsys.readouterr().out
-    assert f"case 3 (python -m {SELF} --case 3):\nit is odd\n" in told
-    assert "9 of 10 cases passed; the slowest took 0.5 s (case 7)" in told
+    reports = capsys.readouterr().out
+    assert f"case 3 (python -m {SELF} --case 3):\nit is odd\n" in reports
+    assert "9 of 10 cases passed; the slowest took 0.5 s (case 7)" in reports
     tried = []
     fuzzer = SimpleNamespace(describe=lambda number: f"case {number}", check=tried.append)
     monkeypatch.setattr(harness, "import_module", lambda name: fuzzer)

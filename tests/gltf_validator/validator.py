@@ -20,15 +20,15 @@ def reports(*paths: Path) -> list[dict]:
     process = _started()
     assert process.stdin is not None
     assert process.stdout is not None
-    found = []
+    result = []
     for path in paths:
         process.stdin.write(f"{path}\n")
         process.stdin.flush()
         answer = process.stdout.readline()
         if not answer:
             raise RuntimeError(f"the glTF validator failed at {path}")
-        found.append(json.loads(answer))
-    return found
+        result.append(json.loads(answer))
+    return result
 
 
 @cache

@@ -22,3 +22,7 @@ def arm_rig() -> Rig:
     sword = trimesh.creation.box(extents=(0.1, 0.1, 1.0))
     hung = Attachment("sword", TriangleMesh(sword.vertices + np.array([1.4, 0, 0]), sword.faces), 2)
     return Rig(mesh, skeleton, weights, (clip,), (hung,), name="arm.glb", world=WORLD)
+
+
+def bare_arm() -> Rig:
+    return Rig(arm_rig().mesh, Skeleton([], []), name="statue", warnings=("it has no skin",))

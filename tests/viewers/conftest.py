@@ -17,6 +17,6 @@ def rig() -> Rig:
 @pytest.fixture(scope="session")
 def binding(rig: Rig) -> Binding:
     """Bind the arm at the resolution of most tests."""
-    found = cutcell.bind(rig, 16)
-    found.weights.setflags(write=False)
-    return found
+    result = cutcell.bind(rig, 16)
+    result.weights.setflags(write=False)
+    return result

@@ -9,17 +9,17 @@ import pytest
 from PIL import Image
 from PIL.ImageSequence import Iterator
 
-import cutcell_viewers.worker
+import cutcell_viewers.process
 from cutcell import Clip
 from cutcell.errors import Cancelled, FileError, MissingLibraryError
 from cutcell_viewers.camera import Camera, around, framing, sees
 from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.encoders import find_ffmpeg
 from cutcell_viewers.film import FRAMES, Order, _camera, draw
-from cutcell_viewers.mp4 import find_ffmpeg
 from cutcell_viewers.palette import DARK, LIGHT
+from cutcell_viewers.process import draw_isolated
 from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
-from cutcell_viewers.worker import draw_apart
 
 pytestmark = pytest.mark.slow
 
@@ -114,14 +114,14 @@ def test_a_film_of_scenes_shows_each_and_its_legend_stays(scene, tmp_path):
 
 def test_a_motion_can_be_played_as_mp4(scene, motion, tmp_path):
     path = tmp_path / "motion.mp4"
-    told = []
-    draw(Order(scene, size=(81, 61), motion=motion), path, lambda *now: told.append(now))
+    reports = []
+    draw(Order(scene, size=(81, 61), motion=motion), path, lambda *now: reports.append(now))
     command = [find_ffmpeg(), "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     film = subprocess.run(command, check=True, capture_output=True).stdout
     frames = np.frombuffer(film, np.uint8).reshape(-1, 60, 80, 3).astype(int)
     assert len(frames) == round(0.3 * FRAMES[".mp4"])
     assert apart(frames[0], frames[-1]) > 0.01
-    fractions = [fraction for _, fraction in told]
+    fractions = [fraction for _, fraction in reports]
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
 
@@ -136,7 +136,7 @@ def test_going_around_keeps_height_and_distance():
 @pytest.mark.parametrize(
     ("name", "options", "words"),
     [
-        ("a.bmp", {}, "cannot be saved"),
+        ("a.bmp", {}, "bmp"),
         ("a.mp4", {}, "turntable"),
         ("a.png", {"turntable": True}, r"\.mp4 or \.gif"),
         ("missing/a.png", {}, "no folder"),
@@ -144,7 +144,7 @@ def test_going_around_keeps_height_and_distance():
 )
 def test_what_cannot_be_stored_is_told_before_it_is_drawn(scene, tmp_path, name, options, words):
     order = Order(scene, size=SIZE, **options)
-    for act in (draw, draw_apart):
+    for act in (draw, draw_isolated):
         with pytest.raises(FileError, match=words):
             act(order, tmp_path / name)
 
@@ -158,7 +158,7 @@ def without_films(monkeypatch):
 
 def test_without_ffmpeg_mp4_says_how_to_install_it(scene, motion, tmp_path, without_films):
     order = Order(scene, size=(64, 48), motion=motion)
-    for act in (draw, draw_apart):
+    for act in (draw, draw_isolated):
         with pytest.raises(MissingLibraryError, match="pip install"):
             act(order, tmp_path / "a.mp4")
     draw(order, tmp_path / "a.gif")
@@ -175,7 +175,7 @@ def test_the_ffmpeg_on_the_path_will_do(scene, motion, tmp_path, monkeypatch, wi
 
 
 def test_what_ffmpeg_complains_of_is_told(scene, motion, tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell_viewers.mp4.ENCODING", ["-c:v", "none"])
+    monkeypatch.setattr("cutcell_viewers.encoders.ENCODING", ["-c:v", "none"])
     with pytest.raises(FileError, match="encoder 'none'"):
         draw(Order(scene, size=(64, 48), motion=motion), tmp_path / "a.mp4")
     assert not list(tmp_path.iterdir())
@@ -183,12 +183,12 @@ def test_what_ffmpeg_complains_of_is_told(scene, motion, tmp_path, monkeypatch):
 
 def test_drawing_apart_draws_the_same_and_tells_how_far_it_is(scene, tmp_path):
     here, there = tmp_path / "here.png", tmp_path / "there.png"
-    told = []
+    reports = []
     draw(Order(scene, size=SIZE), here)
-    draw_apart(Order(scene, size=SIZE), there, lambda *now: told.append(now))
+    draw_isolated(Order(scene, size=SIZE), there, lambda *now: reports.append(now))
     with Image.open(here) as one, Image.open(there) as other:
         np.testing.assert_array_equal(np.asarray(one), np.asarray(other))
-    assert told[-1] == ("drawing", 1.0)
+    assert reports[-1] == ("drawing", 1.0)
 
 
 def test_a_film_that_is_no_longer_wanted_is_stopped_at_once(scene, tmp_path, monkeypatch):
@@ -203,20 +203,20 @@ def test_a_film_that_is_no_longer_wanted_is_stopped_at_once(scene, tmp_path, mon
         if fraction > 0:
             raise Cancelled
 
-    monkeypatch.setattr(cutcell_viewers.worker.subprocess, "Popen", remembered)
+    monkeypatch.setattr(cutcell_viewers.process.subprocess, "Popen", remembered)
     path = tmp_path / "turn.gif"
     with pytest.raises(Cancelled):
-        draw_apart(Order(scene, size=SIZE, turntable=True), path, cancel)
+        draw_isolated(Order(scene, size=SIZE, turntable=True), path, cancel)
     assert started[0].poll() is not None
     assert not path.exists()
     monkeypatch.undo()
 
 
 def test_a_process_that_dies_without_reason_is_told(scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell_viewers.worker.sys.executable", "false")
-    monkeypatch.setattr("cutcell_viewers.opengl._can_draw", lambda: True)
+    monkeypatch.setattr("cutcell_viewers.process.sys.executable", "false")
+    monkeypatch.setattr("cutcell_viewers.process._can_draw", lambda: True)
     with pytest.raises(RuntimeError, match="exit code 1"):
-        draw_apart(Order(scene, size=SIZE), tmp_path / "a.png")
+        draw_isolated(Order(scene, size=SIZE), tmp_path / "a.png")
 
 
 def test_a_film_has_room_for_all_of_its_motion(scene, motion, tmp_path):

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cutcell_viewers import frames
+from cutcell_viewers import process as drawing_process
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
-from cutcell_viewers.frames import Frame, FrameProcess
+from cutcell_viewers.process import DrawingProcess, Frame
 
 SIZE = (200, 120)
 
 
 @pytest.fixture(scope="module")
 def drawing():
-    process = FrameProcess()
+    process = DrawingProcess()
     yield process
     process.close()
 
@@ -77,8 +77,8 @@ def test_many_may_ask_at_once(drawing):
 
 
 def test_the_process_ends_when_idle_and_starts_again(monkeypatch):
-    monkeypatch.setattr(frames, "IDLE_SECONDS", 0.01)
-    process = FrameProcess()
+    monkeypatch.setattr(drawing_process, "IDLE_SECONDS", 0.01)
+    process = DrawingProcess()
     scene = Description({"plate": plate((1.0, 0.0, 0.0))})
     first = pixels(process, scene, framing(scene.bounds))
     timer = process._timer

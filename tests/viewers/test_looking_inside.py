@@ -5,22 +5,19 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import pyvista
 
 import cutcell
 from cutcell.geodesics import trace_path
-from cutcell_viewers.character import to_scene
+from cutcell.graph.sections import interpolate, plane_section, slice_rays
+from cutcell_viewers.character import in_scene, to_scene
 from cutcell_viewers.graph_scene import cut_at, depth_field
-from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.joint_colors import colors_of, joint_colors
 from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
-from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
-from cutcell_viewers.plane_section import from_scene, part_above, plane_section
-from cutcell_viewers.ray_slice import slice_rays
+from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen
 from cutcell_viewers.section_scene import (
     body_section,
     field_face,
     section_lines,
-    values_at,
     winding_face,
 )
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
@@ -57,8 +54,8 @@ def test_a_slice_lies_where_it_is_asked_for(rig):
 
 def test_a_slices_rays_tell_their_winding_number(rig):
     normal, index, cut = slice_place(rig, "z", 0.5, 16)
-    found = slice_rays(rig.mesh, 16, axis=0, normal=normal, index=index)
-    actors, legend = slice_scene(rig, found, LIGHT)
+    result = slice_rays(rig.mesh, 16, axis=0, normal=normal, index=index)
+    actors, legend = slice_scene(rig, result, LIGHT)
     rays = actors["slice rays"]
     assert set(rays.reading.values.round(3)) == {0.0, 1.0}
     assert len(rays.reading.values) == len(rays.points)
@@ -67,7 +64,7 @@ def test_a_slices_rays_tell_their_winding_number(rig):
         assert actor.cells.max(initial=-1) < len(actor.points)
         away = (actor.points - np.array(cut.origin)) @ np.array(cut.normal)
         assert np.abs(away).max() < 0.25 * 3.0 / 16
-    assert len(actors["slice crossings"].points) == 6 * len(found.crossing)
+    assert len(actors["slice crossings"].points) == 6 * len(result.crossing)
     inside = actors["slice points"].points.reshape(-1, 6, 3).mean(axis=1)
     body = to_scene(rig, rig.mesh.vertices)
     assert ((inside > body.min(axis=0)) & (inside < body.max(axis=0))).all()
@@ -89,91 +86,32 @@ def scene_bounds(rig):
     return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
-def area_of(points, faces):
-    corners = points[faces].astype(float)
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.linalg.norm(across, axis=1).sum() / 2
-
-
-OBLIQUE = np.array([0.36, 0.48, 0.8])
-
-
-@pytest.mark.parametrize("axis", ["x", "y", "z", OBLIQUE])
-def test_a_section_is_the_meshs_own(rig, axis):
-    cut = cut_at(scene_bounds(rig), axis, 0.47)
-    found = plane_section(rig, rig.mesh, cut, 40)
-    points, faces, contour = part_above(found, 0.5)
-    away = (np.concatenate([points, found.outline.reshape(-1, 3)]) - cut.origin) @ cut.normal
-    assert np.abs(away).max() < 1e-9
-    whole = pyvista.PolyData.from_regular_faces(to_scene(rig, rig.mesh.vertices), rig.mesh.faces)
-    half = whole.clip(normal=cut.normal, origin=cut.origin).triangulate()
-    corners = half.points[half.regular_faces].astype(float)
-    # The half is open at the section: there its vector area and the section's cancel.
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(axis=0)
-    assert area_of(points, faces) == pytest.approx(np.linalg.norm(across) / 2, rel=1e-4)
-    assert not len(contour)
-    assert set(np.unique(found.winding)) == {0.0, 1.0}
-    corners = points[faces]
-    out = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) @ cut.normal
-    assert (out > -1e-12).all()
-
-
-def test_an_open_mesh_is_filled_by_its_winding_number(rig):
-    whole = rig.mesh
-    corners = whole.vertices[whole.faces].mean(axis=1)
-    middle = corners[:, 0].mean()
-    hole = np.abs(corners[:, 0] - middle) < 0.15
+def test_an_open_section_has_a_contour(rig):
+    corners = rig.mesh.vertices[rig.mesh.faces].mean(axis=1)
+    hole = np.abs(corners[:, 0] - corners[:, 0].mean()) < 0.15
     hole &= corners[:, 1] == corners[:, 1].max()
-    assert hole.any()
-    opened = cutcell.TriangleMesh(whole.vertices, whole.faces[~hole])
+    opened = in_scene(rig, cutcell.TriangleMesh(rig.mesh.vertices, rig.mesh.faces[~hole]))
     cut = cut_at(scene_bounds(rig), "y", 0.5)
-    found = plane_section(rig, opened, cut, 40)
-    assert ((found.winding > 0.05) & (found.winding < 0.95)).any()
-    points, faces, contour = part_above(found, 0.5)
-    assert len(contour)
-    ends = contour.reshape(-1, 3)
-    number = cutcell.winding_number(opened, from_scene(rig, ends))
-    assert np.abs(number - 0.5).max() < 0.1
-    closed = part_above(plane_section(rig, whole, cut, 40), 0.5)
-    assert area_of(points, faces) == pytest.approx(area_of(*closed[:2]), rel=0.1)
-    lines, swatches = section_lines(found, 0.5, cut, 3.0, LIGHT, contour=True)
+    section = plane_section(opened, cut.origin, cut.normal, 40)
+    lines, swatches = section_lines(section, 0.5, cut, 3.0, LIGHT, contour=True)
     assert set(lines) == {"section outline", "section contour"}
     assert len(swatches) == 2
-
-
-def test_a_plane_beside_the_body_has_no_section(rig):
-    bounds = scene_bounds(rig) + np.array([[0.0], [3.0]])
-    found = plane_section(rig, rig.mesh, cut_at(bounds, "z", 0.99), 40)
-    _, faces, _ = part_above(found, 0.5)
-    assert not len(faces)
-    assert not len(found.outline)
 
 
 def test_a_section_shows_the_field(rig, binding):
     graph, field = binding.graph, binding.distances.field(1)
     cut = cut_at(scene_bounds(rig), "z", 0.5)
-    found = body_section(rig, graph, cut)
-    actor = field_face(rig, graph, found, 0.5, field, (0.0, 1.0), "from b: ")
+    result = body_section(rig, graph, cut)
+    actor = field_face(rig, graph, result, 0.5, field, (0.0, 1.0), "from b: ")
     assert len(actor.scalars) == len(actor.points)
     assert not actor.clipped
     # Along the beam, beyond the elbow, the field is the distance to the elbow's bone.
     unit = graph.lattice.to_unit([[1.4, 0.0, 0.0], [0.5, 0.0, 0.0]])
-    values = values_at(graph, unit, field) * graph.lattice.size
+    values = interpolate(graph, unit, field) * graph.lattice.size
     np.testing.assert_allclose(values, [0.4, 0.0], atol=0.16)
-    nothing = np.full(len(graph.nodes), np.inf)
-    assert np.isinf(values_at(graph, unit, nothing)).all()
-    image, legend = winding_face(found)
+    image, legend = winding_face(result)
     assert image.cells.max() < len(image.points) == len(image.scalars)
     assert legend.title == "Winding number"
-
-
-def test_a_linear_field_is_shown_as_it_is(binding):
-    graph = binding.graph
-    field = graph.nodes @ [0.5, 0.3, 0.2]
-    rng = np.random.default_rng(3)
-    low, high = graph.nodes.min(axis=0), graph.nodes.max(axis=0)
-    points = low + rng.random((500, 3)) * (high - low)
-    np.testing.assert_allclose(values_at(graph, points, field), points @ [0.5, 0.3, 0.2], atol=1e-3)
 
 
 def test_depth_is_zero_on_the_surface_and_grows_inwards(binding):

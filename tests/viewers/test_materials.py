@@ -120,20 +120,20 @@ def huge():
 )
 def test_an_image_that_cannot_be_shown_leaves_the_factor_and_is_told(rig_of, content, why):
     rig = rig_of(wall(content, pbr={"baseColorFactor": [0, 1, 0, 1]}))
-    found = load_textures(rig)
-    (note,) = found.notes
+    result = load_textures(rig)
+    (note,) = result.notes
     assert note.startswith('image "wall" cannot be shown: ')
     assert why in note
-    assert (found.body.corners[..., 2] == -1).all()
-    assert (found.body.tints == (0, 255, 0)).all()
+    assert (result.body.corners[..., 2] == -1).all()
+    assert (result.body.tints == (0, 255, 0)).all()
 
 
 def test_where_decoding_ends_all_layers_are_told(rig_of):
     rig = rig_of(wall(png(squares())))
     materials = read_materials(rig)
-    found = as_textures(rig, materials, *none_decoded(materials.layers, "it ended"))
-    assert found.notes == ('image "wall" cannot be shown: it ended',)
-    assert (found.body.corners[..., 2] == -1).all()
+    result = as_textures(rig, materials, *none_decoded(materials.layers, "it ended"))
+    assert result.notes == ('image "wall" cannot be shown: it ended',)
+    assert (result.body.corners[..., 2] == -1).all()
 
 
 def test_corners_turn_with_the_faces_of_a_mirrored_space(rig_of):
@@ -145,11 +145,11 @@ def test_corners_turn_with_the_faces_of_a_mirrored_space(rig_of):
 
 
 def picture(rig, pose=None):
-    found = load_textures(rig)
+    result = load_textures(rig)
     scene = Scene(size=(200, 200))
     try:
-        actors = {"body": body(rig, materials=found.body)}
-        scene.show(Description(actors, images=found.images, pose=pose))
+        actors = {"body": body(rig, materials=result.body)}
+        scene.show(Description(actors, images=result.images, pose=pose))
         scene.set_camera(FRONT)
         return scene.render_png()
     finally:

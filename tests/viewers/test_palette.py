@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from cutcell_assets import DEMOS, demo_path
 from cutcell_viewers import palette
-from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.joint_colors import colors_of, joint_colors
 from tests.conftest import SHARED_RIGS
 from tests.viewers.arm import arm_rig
 
@@ -43,7 +43,7 @@ def test_iso_lines_are_as_many_as_they_say():
 
 
 def test_neighbouring_joints_have_different_colours():
-    colors = palette.joint_colors(np.arange(60) - 1)
+    colors = joint_colors(np.arange(60) - 1)
     assert ((colors >= 0) & (colors <= 1)).all()
     assert np.abs(np.diff(colors, axis=0)).max(axis=1).min() > 0.1
 
@@ -59,6 +59,11 @@ def test_the_three_kinds_of_edges_are_told_apart_by_every_eye(theme):
     kinds = [theme.mesh_edge, palette.INTERIOR, theme.surface_edge]
     apart = palette.differences(kinds)[np.triu_indices(3, 1)]
     assert apart.min() > 0.15
+    # Shading and haze change the lightness of lines: hue and saturation alone tell them apart, too.
+    for eye in ("all cones", "no long cones", "no middle cones"):
+        labs = palette._srgb_to_oklab(palette.as_seen(kinds, eye))[:, 1:]
+        chroma = np.linalg.norm(labs[:, None] - labs, axis=2)[np.triu_indices(3, 1)]
+        assert chroma.min() > 0.08
     # Green and orange of the paper are hardly two colours to an eye without middle cones.
     paper = palette.differences([palette.INTERIOR, palette.SURFACE])[0, 1]
     assert paper < 0.1
@@ -70,7 +75,7 @@ def test_colours_of_joints_repeat_only_when_all_are_used():
     parents, idle = np.array([-1, *[0] * (count + 3)]), [1, 2, 3, 4]
     sizes = np.ones(count + 4)
     sizes[idle] = 0
-    colors = palette.joint_colors(parents, sizes=sizes)
+    colors = joint_colors(parents, sizes=sizes)
     assert len(np.unique(np.delete(colors, idle, axis=0), axis=0)) == count
 
 
@@ -78,7 +83,7 @@ def test_parts_whose_skin_touches_have_other_colours():
     rng = np.random.default_rng(0)
     parents = np.concatenate([[-1], [int(rng.integers(k)) for k in range(1, 80)]])
     touching = np.array([(a, b) for a in range(80) for b in (a + 7, a + 20, a + 33) if b < 80])
-    colors = palette.joint_colors(parents, touching)
+    colors = joint_colors(parents, touching)
     assert (np.abs(colors[touching[:, 0]] - colors[touching[:, 1]]).max(axis=1) > 0).all()
 
 
@@ -107,9 +112,25 @@ def test_large_parts_do_not_share_colours():
     assert len(np.unique(colors_of(rig)[largest], axis=0)) >= 11
 
 
+def test_all_colours_of_joints_are_told_apart():
+    colors, pairs = (
+        np.array(palette.JOINT_COLORS) / 255,
+        np.triu_indices(len(palette.JOINT_COLORS), 1),
+    )
+    assert palette.differences(colors, ("all cones",))[pairs].min() > 0.09
+    assert palette.differences(colors, ("no middle cones",))[pairs].min() > 0.06
+    assert palette.differences(colors)[pairs].min() > 0.06
+
+
+def test_hand_spine_and_the_opposite_thigh_differ():
+    rig = cutcell.load(demo_path("biped"))
+    joints = [rig.skeleton.names.index(name) for name in ("hand.L", "spine2", "thigh.R")]
+    assert palette.differences(colors_of(rig)[joints])[np.triu_indices(3, 1)].min() > 0.08
+
+
 def test_parts_that_are_near_in_space_differ_without_touching():
     nearby = np.array([(a, b) for a in range(60) for b in (a + 16, a + 32) if b < 60])
-    colors = palette.joint_colors(np.full(60, -1), nearby=nearby)
+    colors = joint_colors(np.full(60, -1), nearby=nearby)
     labs = palette._srgb_to_oklab(colors)
     assert np.linalg.norm(labs[nearby[:, 0]] - labs[nearby[:, 1]], axis=1).min() > 0.14
 

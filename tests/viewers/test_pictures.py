@@ -8,6 +8,7 @@ from PIL import Image
 
 import cutcell
 from cutcell.errors import ParameterError
+from cutcell.pose import axis_rotation
 from cutcell_viewers import palette
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
@@ -15,7 +16,7 @@ from cutcell_viewers.distance_scene import distance_scene
 from cutcell_viewers.film import ground
 from cutcell_viewers.graph_scene import cut_at, graph_scene
 from cutcell_viewers.palette import LIGHT
-from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
+from cutcell_viewers.pose_scene import joint_turns, pose_scene
 from cutcell_viewers.scene import Scene, render_png
 from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
@@ -25,7 +26,7 @@ SIZE = (240, 180)
 
 @pytest.fixture(scope="module")
 def scenes(rig, binding):
-    bent = cutcell.forward_kinematics(rig.skeleton, joint_turns(rig, {1: turn("z", 60)}))
+    bent = cutcell.forward_kinematics(rig.skeleton, joint_turns(rig, {1: axis_rotation("z", 60)}))
     return {
         "graph": graph_scene(rig, binding.graph),
         "distance": distance_scene(rig, binding.distances.joint[1], 1),
@@ -53,6 +54,27 @@ def test_each_scene_fills_its_picture_and_stays_inside(scenes, name, theme):
         border = np.ones(seen.shape, bool)
         border[2:-2, 2:-2] = False
         assert not seen[border].any()
+
+
+def test_dual_quaternions_are_drawn_where_they_move_the_points(scenes):
+    linear = scenes["pose"]
+    dual = replace(linear, blending="dual")
+    moved = {
+        name: replace(
+            actor,
+            points=actor.points_in(dual.pose, "dual"),
+            normals=None if (n := actor.normals) is None else actor.skin.turn(n, dual.pose, "dual"),
+            skin=None,
+        )
+        for name, actor in dual.actors.items()
+    }
+    camera = framing(dual.bounds, SIZE[0] / SIZE[1])
+    pictures = [
+        render_png(scene, size=SIZE, camera=camera).astype(int)
+        for scene in (dual, Description(moved), linear)
+    ]
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert (np.abs(pictures[0] - pictures[2]).max(axis=2) > 12).mean() > 1e-3
 
 
 def test_the_picture_is_written_as_a_png(scenes, tmp_path):

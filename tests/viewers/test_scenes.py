@@ -7,6 +7,7 @@ import pytest
 
 import cutcell
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from cutcell.pose import axis_rotation, pose_at
 from cutcell.rig import Skeleton
 from cutcell_viewers import palette
 from cutcell_viewers.character import (
@@ -22,8 +23,7 @@ from cutcell_viewers.distance_scene import distance_scene
 from cutcell_viewers.graph_scene import LAYERS, NODES, cut_at, graph_scene
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import UNREACHED, colormap, to_bytes
-from cutcell_viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
-from cutcell_viewers.skin import moved
+from cutcell_viewers.pose_scene import joint_turns, pose_scene, swing
 from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import WORLD
 
@@ -192,25 +192,29 @@ def test_the_cut_lies_where_it_is_asked(axis, k):
 
 
 def test_a_pose_moves_the_scene_as_it_moves_the_rig(rig):
-    transforms = cutcell.forward_kinematics(rig.skeleton, joint_turns(rig, {1: turn("y", 40)}))
+    transforms = cutcell.forward_kinematics(
+        rig.skeleton, joint_turns(rig, {1: axis_rotation("y", 40)})
+    )
     scene = pose_scene(rig, rig.weights, transforms)
     actor = scene.actors["body"]
     expected = to_scene(
         rig, cutcell.linear_blend_skinning(rig.mesh.vertices, rig.weights, transforms)
     )
-    np.testing.assert_allclose(moved(actor.points, actor.skin, scene.pose), expected, atol=1e-5)
+    np.testing.assert_allclose(actor.points_in(scene.pose), expected, atol=1e-5)
 
 
 def test_turns_are_about_the_scenes_axes(rig):
     # The scene's y is the rig's z: turning about y keeps the beam's heights.
-    transforms = cutcell.forward_kinematics(rig.skeleton, joint_turns(rig, {0: turn("y", 30)}))
+    transforms = cutcell.forward_kinematics(
+        rig.skeleton, joint_turns(rig, {0: axis_rotation("y", 30)})
+    )
     posed = cutcell.linear_blend_skinning(rig.mesh.vertices, rig.weights, transforms)
     np.testing.assert_allclose(posed[:, 2], rig.mesh.vertices[:, 2], atol=1e-12)
 
 
 @pytest.mark.parametrize("axis", "xyz")
 def test_a_turn_is_a_rotation_about_its_axis(axis):
-    rotation = turn(axis, 90)
+    rotation = axis_rotation(axis, 90)
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(rotation) == pytest.approx(1)
     k = "xyz".index(axis)
@@ -228,12 +232,14 @@ def test_a_swing_begins_and_ends_at_rest(rig):
 
 def test_a_motion_can_be_read_between_its_frames_and_repeats(rig):
     clip = rig.clips[0]
-    half = pose_at(rig, clip, 0.5)
+    half = pose_in_scene(rig, pose_at(clip, 0.5))
     expected = pose_in_scene(rig, (clip.transforms[0] + clip.transforms[1]) / 2)
     np.testing.assert_allclose(half, expected)
-    np.testing.assert_allclose(pose_at(rig, clip, 3.5), half)
+    np.testing.assert_allclose(pose_in_scene(rig, pose_at(clip, 3.5)), half)
     still = cutcell.Clip("still", np.zeros(1), clip.transforms[:1])
-    np.testing.assert_allclose(pose_at(rig, still, 2.0), pose_in_scene(rig, clip.transforms[0]))
+    np.testing.assert_allclose(
+        pose_in_scene(rig, pose_at(still, 2.0)), pose_in_scene(rig, clip.transforms[0])
+    )
 
 
 def test_bones_far_out_of_the_body_do_not_shrink_it(rig):

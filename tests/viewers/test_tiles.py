@@ -49,9 +49,9 @@ def test_the_browser_divides_its_canvas_in_the_same_way():
         for s in (0.4, 1, 2.5)
     ]
     in_the_browser = ask_browser(f"{json.dumps(cases)}.map((c) => tiles(...c))")
-    for (count, width, height, shape), found in zip(cases, in_the_browser, strict=True):
-        for ours, theirs in zip(tiles(count, (width, height), shape), found, strict=True):
-            assert ours == pytest.approx(theirs, abs=1)
+    for (count, width, height, shape), result in zip(cases, in_the_browser, strict=True):
+        for computed, reference in zip(tiles(count, (width, height), shape), result, strict=True):
+            assert computed == pytest.approx(reference, abs=1)
 
 
 def test_the_browser_leaves_room_for_captions():
@@ -76,9 +76,9 @@ def test_a_box_has_the_shape_that_is_seen_at_first(size):
 def test_the_browser_sees_boxes_of_the_same_shape():
     sizes = [(1, 1, 1), (0.5, 0.9, 1.4), (3, 1, 0.1), (0.1, 4, 0.1), (9, 1, 9), (0, 0, 0)]
     boxes = [[x for side in size for x in (-side, 0)] for size in sizes]
-    found = ask_browser(f"{json.dumps(boxes)}.map(shapeOf)")
-    ours = [shape_of(np.array([[0, 0, 0], size])) for size in sizes]
-    assert ours == pytest.approx(found)
+    result = ask_browser(f"{json.dumps(boxes)}.map(shapeOf)")
+    computed = [shape_of(np.array([[0, 0, 0], size])) for size in sizes]
+    assert computed == pytest.approx(result)
 
 
 def ask_browser(code):

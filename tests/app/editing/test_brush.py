@@ -7,7 +7,7 @@ import pytest
 
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
 from cutcell.errors import SkeletonError
-from cutcell_app.editing import Brush, find_joint_mirror, paint_weights
+from cutcell_app.editing import Brush, joint_mirror, paint_weights
 from cutcell_app.editing.stroke import PaintSurface, Stroke
 
 CELLS, WIDE = 20, 4
@@ -272,7 +272,7 @@ def test_weights_of_another_shape_and_idle_joints_are_refused(rig):
 
 
 def test_a_mirror_of_joints_is_enough_where_the_mesh_has_no_partner(rig, at):
-    mirror = find_joint_mirror(rig)
+    mirror = joint_mirror(rig)
     half = rig.mesh.vertices[:, 0] >= 0
     faces = rig.mesh.faces[half[rig.mesh.faces].all(axis=1)]
     one = Rig(TriangleMesh(rig.mesh.vertices, faces), rig.skeleton)
@@ -286,9 +286,9 @@ def test_only_vertices_within_a_selection_are_painted(rig):
     wide, within = Brush(0.5), rig.mesh.vertices[:, 1] > 0.5
     middle = int(np.abs(rig.mesh.vertices[:, 1] - 0.5).argmin())
     free = paint_weights(rig, rig.weights, LEFT, [middle], wide)
-    found = paint_weights(rig, rig.weights, LEFT, [middle], wide, within=within)
-    assert np.array_equal(found[within], free[within])
-    assert np.array_equal(found[~within], rig.weights[~within])
+    result = paint_weights(rig, rig.weights, LEFT, [middle], wide, within=within)
+    assert np.array_equal(result[within], free[within])
+    assert np.array_equal(result[~within], rig.weights[~within])
     assert (free[~within] != rig.weights[~within]).any()
     with pytest.raises(WeightsError, match="within"):
         paint_weights(rig, rig.weights, LEFT, [middle], wide, within=[True])

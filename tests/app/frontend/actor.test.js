@@ -24,6 +24,7 @@ class PolyData {
       setNormals: (array) => { this.arrays.normals = array },
     }
   }
+
   modified() {}
 }
 
@@ -32,6 +33,7 @@ class Mapper {
     this.attributes = []
     this.special = {}
   }
+
   setInputData() {}
   setCustomShaderAttributes(names) { this.attributes = names }
   getViewSpecificProperties() { return this.special }
@@ -58,8 +60,11 @@ const counts = new Set(readdirSync(ASSETS).filter((name) => name.endsWith(".glb"
   return parts.reduce((sum, {attributes}) => sum + accessors[attributes.POSITION].count, 0)
 }))
 
-const points = (n) => ({points: new Float32Array(3 * n), normals: new Float32Array(3 * n), cells: Uint32Array.of(0, 1, 2)})
-const skin = (n, count) => ({joints: new Uint16Array(count * n), weights: new Float32Array(count * n), count})
+const floats = (n) => new Float32Array(n)
+const points = (n) =>
+  ({points: floats(3 * n), normals: floats(3 * n), cells: Uint32Array.of(0, 1, 2)})
+const skin = (n, count) =>
+  ({joints: new Uint16Array(count * n), weights: floats(count * n), count})
 const paint = {color: [1, 1, 1], coloured: true}
 const looks = {
   colors: (n) => ({paint, colors: new Uint8Array(3 * n)}),
@@ -67,7 +72,7 @@ const looks = {
   plain: () => ({paint: {...paint, coloured: false}}),
 }
 
-function check({made: [{data, mapper}], rest}, n, said) {
+function check({data, mapper, rest}, n, said) {
   assert.equal(rest.length, 3 * n)
   for (const name of mapper.attributes) {
     const {values, numberOfComponents} = data.arrays[name]
@@ -83,7 +88,8 @@ test("whatever stood there before, all that a vertex has is there for each verte
         for (const now of counts) {
           const said = `${before} then ${now} vertices, ${look}, posed ${posed}`
           const body = actor()
-          body.update({kind: "surface", ...points(before), ...coloured(before), skin: skin(before, 4), apart: {...skin(before, 5), unit: 1}})
+          const skins = {skin: skin(before, 4), apart: {...skin(before, 5), unit: 1}}
+          body.update({kind: "surface", ...points(before), ...coloured(before), ...skins})
           check(body, before, said)
           body.update({...points(now), ...coloured(now), ...posed ? {skin: skin(now, 4)} : {}})
           check(body, now, said)

@@ -16,7 +16,10 @@ function browser({refuses = false} = {}) {
   const history = {
     state: null,
     pushState: (state, title, address) => { set(address); entries.push(address) },
-    replaceState: (state, title, address) => { set(address); entries[entries.length - 1] = address },
+    replaceState: (state, title, address) => {
+      set(address)
+      entries[entries.length - 1] = address
+    },
   }
   const setTimeout = (act) => timers.push(act)
   const clearTimeout = (id) => { if (id) { timers[id - 1] = () => {} } }
@@ -39,7 +42,8 @@ test("the entry that is left keeps its last choices", () => {
 
 test("another character and another step are entries of their own, at once", () => {
   const {entries, bar} = browser()
-  for (const address of ["?rig=a", "?rig=a&x=1", "?rig=b", "?rig=b&step=2", "?rig=b&step=3"]) { bar.put(address) }
+  const addresses = ["?rig=a", "?rig=a&x=1", "?rig=b", "?rig=b&step=2", "?rig=b&step=3"]
+  for (const address of addresses) { bar.put(address) }
   assert.deepEqual(entries.slice(1), ["/?rig=b", "/?rig=b&step=2", "/?rig=b&step=3"])
 })
 

@@ -78,13 +78,16 @@ test("a stroke is told in pieces, one after the other, and ends", () => {
   made.show(ON)
   assert.equal(shown.at(-1), true)
   assert.ok(send("pointerdown", 10, 10))
-  assert.deepEqual([told[0].first, told[0].done, told[0].mode, told[0].points.length], [true, false, null, 6])
+  const {first, done, mode, points} = told[0]
+  assert.deepEqual([first, done, mode, points.length], [true, false, null, 6])
   assert.ok(send("pointermove", 40, 10))
   assert.ok(send("pointermove", 50, 10))
   assert.equal(told.length, 1, "the server has not answered")
   made.painted({vertices: [1], scalars: [0.5]}, actor)
   assert.equal(coloured.length, 1)
-  assert.deepEqual([told[1].first, told[1].points.length % 6, told[1].points.length > 30], [false, 0, true])
+  const next = told[1]
+  assert.deepEqual([next.first, next.points.length % 6], [false, 0])
+  assert.ok(next.points.length > 30)
   send("pointermove", 60, 10)
   assert.ok(send("pointerup", 60, 10))
   assert.ok(told[2].done, "the end waits for no answer")

@@ -13,7 +13,9 @@ function fit(rest, width = 400, height = 400) {
     element: {clientHeight: height},
     tilesIn: () => [[0, 0, width, height]],
     taken: (insets) => insets,
-    actors: new Map([["body", {kind: "surface", rest}], ["marks", {kind: "lines", rest: [9, 9, 9]}]]),
+    actors: new Map([
+      ["body", {kind: "surface", rest}], ["marks", {kind: "lines", rest: [9, 9, 9]}],
+    ]),
   })
 }
 

@@ -32,7 +32,8 @@ function placed(points, cards = []) {
   const legend = {
     hidden: false, style: {}, getBoundingClientRect: () => {
       const [x, y] = place.shift
-      return {left: HOME.left + x, right: HOME.right + x, top: HOME.top + y, bottom: HOME.bottom + y}
+      const {left, right, top, bottom} = HOME
+      return {left: left + x, right: right + x, top: top + y, bottom: bottom + y}
     },
   }
   const overlay = {
@@ -42,7 +43,8 @@ function placed(points, cards = []) {
     views: [1], projection: () => ([x, y]) => [x, y, 1],
     actors: new Map([["body", {visible: true, posed: () => points}]]),
   }
-  const place = new LegendPlace(overlay, renderer, () => cards.map((box) => ({getBoundingClientRect: () => box})))
+  const boxed = (box) => ({getBoundingClientRect: () => box})
+  const place = new LegendPlace(overlay, renderer, () => cards.map(boxed))
   place.put()
   return {place, legend, renderer}
 }

@@ -12,12 +12,13 @@ function card() {
     createTexture: () => ({}),
     texStorage3D: note("storage"), texSubImage3D: note("images"), generateMipmap: note("mipmap"),
     deleteTexture: note("delete"), activeTexture: note("unit"),
-    texSubImage2D: (...given) => puts.push({row: given[3], size: [given[4], given[5]], values: given[8]}),
+    texSubImage2D: (...given) =>
+      puts.push({row: given[3], size: [given[4], given[5]], values: given[8]}),
   }, {get: (of, name) => of[name] ?? (/^[A-Z]/.test(name) ? name : () => {})})
   return {gl, calls, puts, of: (name) => calls.filter(([called]) => called === name)}
 }
 
-test("images become layers, with all smaller sizes; without any there is one for the shader", () => {
+test("images become layers, with all smaller sizes; without any the shader has one", () => {
   const {gl, of} = card()
   const layers = new ImageLayers(gl)
   assert.deepEqual(of("storage").at(-1).slice(2), [1, "RGBA8", 1, 1, 1])
@@ -47,7 +48,8 @@ function wrapped(at, how, edge) {
   const code = body.slice(0, body.indexOf("\n      }"))
   const clamp = (x, low, high) => Math.min(Math.max(x, low), high)
   const mod = (x, by) => x - by * Math.floor(x / by)
-  return new Function("at", "how", "edge", "clamp", "mod", "abs", code)(at, how, edge, clamp, mod, Math.abs)
+  const wrapped = new Function("at", "how", "edge", "clamp", "mod", "abs", code)
+  return wrapped(at, how, edge, clamp, mod, Math.abs)
 }
 
 test("an image repeats, ends with its border, or turns back", () => {
@@ -73,7 +75,8 @@ test("each of four by four pixels is drawn from another alpha on", () => {
   for (let x = 0; x < 4; x++) {
     for (let y = 0; y < 4; y++) { found.add(0.25 * share(x / 2, y / 2) + share(x, y) + 0.03125) }
   }
-  assert.deepEqual([...found].sort((a, b) => a - b), Array.from({length: 16}, (_, i) => (i + 0.5) / 16))
+  const all = Array.from({length: 16}, (_, i) => (i + 0.5) / 16)
+  assert.deepEqual([...found].sort((a, b) => a - b), all)
 })
 
 test("the shader of a surface in materials reads no colours of points", () => {

@@ -14,12 +14,14 @@ function orbit() {
   }
   const act = (name) => (e) => told.push([name, e])
   const made = new Orbit(element, {
-    changed: act("changed"), rested: act("rested"), clicked: act("clicked"), hovered: act("hovered"),
+    changed: act("changed"), rested: act("rested"),
+    clicked: act("clicked"), hovered: act("hovered"),
   })
   return {made, heard, told}
 }
 
-const pointer = (x, y, more) => ({pointerId: 1, clientX: x, clientY: y, button: 0, buttons: 1, ...more})
+const pointer = (x, y, more) =>
+  ({pointerId: 1, clientX: x, clientY: y, button: 0, buttons: 1, ...more})
 
 test("it looks from where it was told, and comes back", () => {
   const {made} = orbit()

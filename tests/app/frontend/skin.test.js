@@ -1,7 +1,9 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Clip, skinArrays, skinned, skinVertex, transformed, withRows} from "../../../app/frontend/skin.js"
+import {
+  Clip, skinArrays, skinned, skinVertex, transformed, withRows,
+} from "../../../app/frontend/skin.js"
 
 const moved = (x, y, z) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
 const quarterTurn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
@@ -40,7 +42,8 @@ test("a point on a joint goes with it, and stays at rest", () => {
 test("influences go to the card four at a time", () => {
   const skin = {joints: [0, 1, 2, 3, 4], weights: [0.1, 0.2, 0.3, 0.4, 0.5], count: 5}
   const arrays = Object.fromEntries(skinArrays("skin", skin))
-  assert.deepEqual(Object.keys(arrays), ["skinJoints0", "skinWeights0", "skinJoints1", "skinWeights1"])
+  const names = ["skinJoints0", "skinWeights0", "skinJoints1", "skinWeights1"]
+  assert.deepEqual(Object.keys(arrays), names)
   assert.deepEqual([...arrays.skinJoints1], [4, 0, 0, 0])
   assert.deepEqual([...arrays.skinWeights1], [0.5, 0, 0, 0])
   const {declared} = skinVertex(2, 0)

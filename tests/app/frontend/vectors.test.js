@@ -3,7 +3,8 @@ import {test} from "node:test"
 import {rotated, spanned} from "../../../app/frontend/vectors.js"
 
 const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0)
-const near = (a, b) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) < 1e-12, `${a} is not ${b}`))
+const near = (a, b) =>
+  assert.ok(a.every((x, i) => Math.abs(x - b[i]) < 1e-12), `${a} is not ${b}`)
 
 test("a plane is spanned by two directions at right angles", () => {
   for (const normal of [[1, 0, 0], [0, 1, 0], [0, 0, -1], [0.36, 0.48, 0.8]]) {

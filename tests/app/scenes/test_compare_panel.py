@@ -8,15 +8,15 @@ import pytest
 import cutcell
 import cutcell_lab
 from cutcell.runtime.progress import silent
-from cutcell_app.commands.compare import Compared, choose, measured, next_method
-from cutcell_app.panels.compare import _field, about, rows_of
-from cutcell_app.scenes import Memo, resolve
-from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
-from cutcell_app.state import State
-from cutcell_app.state.compare import NOW, offered
+from cutcell_app.document.state import State
+from cutcell_app.features.compare.choices import NOW, offered
+from cutcell_app.features.compare.controls import FIELD, about, rows_of
+from cutcell_app.features.compare.results import Compared, choose, measured
+from cutcell_app.features.compare.scene import WAITING, caption_of, field_shown, title_of
+from cutcell_app.features.scenes import Memo, resolve
+from cutcell_app.widgets.controls import draw
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from cutcell_lab.metrics import deformation_error, weight_l1
-from tests.viewers.arm import arm_rig
 
 
 @pytest.fixture(scope="module")
@@ -89,22 +89,17 @@ def test_errors_share_one_scale(state, rig, binding, euclidean):
 
 
 def test_what_is_not_there_yet_waits_pale_and_what_failed_says_so(state, rig):
-    state.compared = {"euclidean": Compared(rig, None, "it has no inside")}
+    state.compared = {"euclidean": Compared(None, "it has no inside")}
     scene = resolve(state)
     assert scene.actors["body 2"].opacity == WAITING
     assert scene.views[2] == "Euclidean · failed"
     state.methods = [NOW, "voxel"]
     assert caption_of(state, "voxel").endswith("waiting")
-    state.comparing = "voxel"
+    state.computing = frozenset({("compared", "voxel")})
     assert caption_of(state, "voxel").endswith("computing")
 
 
-def test_results_of_another_character_are_never_shown(state):
-    other = arm_rig()
-    state.param.update(rig=other, binding=cutcell.bind(other, 16))
-    assert caption_of(state, "euclidean").endswith("waiting")
-    assert resolve(state).actors["body 2"].opacity == WAITING
-    assert next_method(state) == NOW
+def test_nothing_is_compared_before_there_are_weights(state):
     state.binding = None
     assert resolve(state).views == ()
 
@@ -118,9 +113,9 @@ def test_the_measures_are_those_of_the_core(rig, euclidean):
 
 
 def test_without_the_files_weights_only_times_are_measured(rig, binding):
-    found = measured(rig.with_weights(None), "euclidean", binding, 16, silent)
-    assert (found.l1, found.deformation, found.errors) == (None, None, None)
-    assert found.seconds > 0
+    result = measured(rig.with_weights(None), "euclidean", binding, 16, silent)
+    assert (result.l1, result.deformation, result.errors) == (None, None, None)
+    assert result.seconds > 0
     assert "artist" not in offered(rig.with_weights(None))
 
 
@@ -133,8 +128,8 @@ def test_a_method_that_fails_says_why(rig, binding, monkeypatch):
 
     monkeypatch.setitem(METHODS, "gives_up", gives_up)
     monkeypatch.setitem(METHODS, "raises", raises)
-    found = measured(rig, "gives_up", binding, 16, silent)
-    assert (found.weights, found.failed, found.seconds) == (None, "nothing is inside", 0.5)
+    result = measured(rig, "gives_up", binding, 16, silent)
+    assert (result.weights, result.failed, result.seconds) == (None, "nothing is inside", 0.5)
     assert measured(rig, "raises", binding, 16, silent).failed == "the mesh is open"
     assert {"gives_up", "raises"} <= set(offered(rig))
     assert title_of("gives_up") == "Gives up"
@@ -162,7 +157,7 @@ def test_the_table_tells_what_is_known(state, rig):
     assert not rows["voxel"]["chosen"]
     assert rows[NOW]["note"] == "Waiting"
     state.methods = [NOW, "artist", "euclidean", "voxel"]
-    state.compared = {"voxel": Compared(rig, None, "no inside")}
+    state.compared = {"voxel": Compared(None, "no inside")}
     rows = {row["id"]: row for row in rows_of(state)}
     assert (rows["voxel"]["note"], rows["voxel"]["state"]) == ("No inside", "failed")
     assert rows["bbw"]["fixed"]
@@ -180,15 +175,15 @@ def test_a_memo_keeps_what_did_not_change(state):
 
 
 def test_without_the_files_own_weights_no_error_is_promised(rig):
-    assert about(None) == about(rig)
-    assert about(rig).endswith("against the original weights.")
-    assert "no weights" in about(rig.with_weights(None))
+    assert about(State()) == about(State(rig=rig))
+    assert about(State(rig=rig)).endswith("against the original weights.")
+    assert "no weights" in about(State(rig=rig.with_weights(None)))
 
 
 def test_without_weights_of_its_own_no_error_is_offered_or_shown(state, rig, binding):
     bare = replace(rig, weights=None)
     state.compare_field = "error"
-    row = _field(state)
+    row = draw(Page(state), FIELD)
     assert "Error" in row.options
     state.param.update(rig=bare, binding=binding, methods=[NOW, "euclidean"], compared={})
     assert "Error" not in row.options

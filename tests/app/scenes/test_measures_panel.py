@@ -5,22 +5,20 @@ import pytest
 
 import cutcell
 from cutcell.geodesics import path_length
-from cutcell.runtime.progress import silent
-from cutcell_app.commands import loading
-from cutcell_app.panels.error_curves import error_curves
-from cutcell_app.scenes import following, resolve
-from cutcell_app.scenes.distance import farthest, wants_field
-from cutcell_app.scenes.measured_distance import (
+from cutcell_app.derive.derived import compute_wanted
+from cutcell_app.document import loading
+from cutcell_app.document.address import from_query, to_query
+from cutcell_app.document.state import State
+from cutcell_app.features.distance.choices import MEASURES as NAMED
+from cutcell_app.features.distance.measures import WAITING
+from cutcell_app.features.distance.results import RESULTS
+from cutcell_app.features.distance.scene import farthest, wants_field
+from cutcell_app.features.scenes import following, resolve
+from cutcell_lab.baselines.measured_distance import (
     MEASURES,
-    error_points,
     mean_error,
     measure_distance,
 )
-from cutcell_app.scenes.measures import WAITING, measured_of, measuring
-from cutcell_app.state import State
-from cutcell_app.state.distance import MEASURES as NAMED
-from cutcell_app.state.distance import RESOLUTIONS
-from cutcell_app.state.url import from_query, to_query
 from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
 
@@ -29,8 +27,7 @@ from tests.viewers.arm import arm_rig
 def state(rig, binding):
     state = State(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)
     state.param.update(beside_straight=True, beside_voxel=True, beside_any=True)
-    for name in state.measures:
-        state.measured = {**state.measured, name: measuring(state, name)()}
+    compute_wanted(state, RESULTS)
     return state
 
 
@@ -42,46 +39,28 @@ def test_each_measure_has_a_view_and_all_have_one_scale(state, rig, binding):
     assert len({body.limits for body in bodies}) == 1
     method = cutcell.ANIMATION.with_options(resolution=16)
     for name, body in zip(("straight", "voxel", "any"), bodies, strict=True):
-        found = measure_distance(rig, binding.distances, 1, name, method).vertices
-        np.testing.assert_allclose(body.scalars, found, rtol=1e-5)
-        assert found.max() <= farthest(state) == body.limits[1]
+        result = measure_distance(rig, binding.distances, 1, name, method).vertices
+        np.testing.assert_allclose(body.scalars, result, rtol=1e-5)
+        assert result.max() <= farthest(state) == body.limits[1]
     assert scene.actors["voxels"].view == 1
     assert not wants_field(state)  # of the single view
 
 
 def test_beside_the_converged_one_each_says_its_error(state):
     state.param.update(beside_straight=False, beside_voxel=False, beside_converged=True)
-    state.measured = {**state.measured, "converged": measuring(state, "converged")()}
-    one, converged = (measured_of(state, name) for name in ("any", "converged"))
+    compute_wanted(state, RESULTS)
+    one, converged = (state.measured[name] for name in ("any", "converged"))
     error = mean_error(one, converged)
     assert 0 < error < 0.1
     assert resolve(state).views[0] == f"Any angle, R = 16 · error {error:.1%}"
     assert mean_error(converged, converged) == 0
 
 
-def test_an_address_does_not_say_that_errors_are_being_measured(state):
-    before = to_query(state)
-    state.measuring_errors = True
-    assert to_query(state) == before
-
-
-def test_errors_are_less_at_a_higher_resolution(rig, binding):
-    method = cutcell.ANIMATION.with_options(resolution=16)
-    points = error_points(rig, binding.distances, 1, method, silent)
-    assert {point.resolution for point in points} == set(RESOLUTIONS)
-    first, last = (
-        next(p.error for p in points if (p.measure, p.resolution) == ("any", resolution))
-        for resolution in (RESOLUTIONS[0], RESOLUTIONS[-1])
-    )
-    assert last < first
-    assert len(error_curves(points)) == 2
-
-
 def test_from_a_clicked_vertex_each_draws_its_path(state):
     state.vertex = 0
     scene = resolve(state)
     for view, name in enumerate(state.measures):
-        path = measured_of(state, name).path_from(0)
+        path = state.measured[name].path_from(0)
         assert scene.actors[f"path {view}"].view == view
         assert scene.views[view].endswith(f" · {path_length(path):.3g}")
     state.path = False
@@ -98,20 +77,23 @@ def test_waves_are_in_step(state):
 
 
 def test_what_is_not_measured_yet_waits(state):
-    state.param.update(measured={}, measuring="voxel")
+    state.param.update(measured={}, computing=frozenset({("measured", "voxel")}))
     scene = resolve(state)
     assert scene.views[:2] == ("Straight line · waiting", "Along voxels, R = 16 · computing")
     assert scene.actors["body"].opacity == WAITING
     assert farthest(state) is None
 
 
-def test_what_was_measured_of_something_else_is_not_shown(state):
-    assert measured_of(state, "any") is not None
+def test_what_was_measured_of_something_else_is_not_shown(session, loop):
+    state = session.state
+    state.param.update(resolution=16, beside_resolution=16)
+    loading.show_rig(session, arm_rig())
+    state.param.update(panel="distance", joint=1, beside_straight=True, beside_6=True)
+    loop.run_until(lambda: len(state.measured) == 2, 60)
     state.beside_resolution = 32
-    assert measured_of(state, "any") is None
-    assert measured_of(state, "straight") is not None  # no R tells it
-    state.joint = 0
-    assert measured_of(state, "straight") is None
+    assert set(state.measured) == {"straight"}, "its distances have no resolution"
+    state.joint = 2
+    assert state.measured == {}
 
 
 def test_there_is_no_cut_through_bodies_side_by_side(state):
@@ -145,25 +127,22 @@ def test_they_are_computed_one_after_the_other(session, loop):
     loading.show_rig(session, arm_rig())
     state.param.update(panel="distance", beside_surface=True, beside_6=True)
     loop.run_until(lambda: len(state.measured) == 2, 60)
-    assert state.measuring == ""
+    loop.run_until(lambda: not state.computing)
     assert state.field is None
-    assert all(measured_of(state, name) is not None for name in state.measures)
+    assert all(state.measured[name] is not None for name in state.measures)
 
 
 def test_one_that_fails_is_told_and_taken_off(session, loop, monkeypatch):
-    def fails(state, name):
-        raise_it = cutcell.errors.MeshError("the mesh is too large")
+    def fails(rig, distances, joint, name, method):
+        if name == "6":
+            raise cutcell.errors.MeshError("the mesh is too large")
+        return measure_distance(rig, distances, joint, name, method)
 
-        def measure():
-            raise raise_it
-
-        return measure if name == "6" else measuring(state, name)
-
-    monkeypatch.setattr("cutcell_app.commands.distance.measuring", fails)
+    monkeypatch.setattr("cutcell_app.features.distance.results.measure_distance", fails)
     state = session.state
     state.param.update(resolution=16, beside_resolution=16)
     loading.show_rig(session, arm_rig())
     state.param.update(panel="distance", beside_6=True, beside_straight=True)
-    loop.run_until(lambda: "straight" in state.measured and not state.measuring, 60)
+    loop.run_until(lambda: "straight" in state.measured and not state.computing, 60)
     assert state.measures == ["straight"]
     assert state.message == ("error", "The mesh is too large.")

@@ -6,14 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cutcell
-from cutcell_app.commands.pose import scene_error
-from cutcell_app.scenes import Memo, resolve
-from cutcell_app.scenes.pose import VIEWS, angles_of, error_of, gizmo_part, rotation_of
-from cutcell_app.state import State
-from cutcell_lab.metrics import deformation_error
+from cutcell.pose import axis_rotation
+from cutcell_app.document.state import State
+from cutcell_app.features.pose.scene import VIEWS, angles_of, error_of, gizmo_part, rotation_of
+from cutcell_app.features.scenes import Memo, resolve
+from cutcell_app.widgets.changes import changes
+from cutcell_lab.metrics import deformation_error, scene_error
 from cutcell_viewers.character import pose_in_scene
-from cutcell_viewers.error_scene import Gap
-from cutcell_viewers.pose_scene import joint_turns, turn
+from cutcell_viewers.description import Description
+from cutcell_viewers.error_scene import gap_between
+from cutcell_viewers.pose_scene import joint_turns
 
 angle = st.floats(-180, 180)
 
@@ -32,9 +34,9 @@ def test_angles_make_the_rotation_that_they_are_read_from(x, y, z):
 
 @given(angle, st.floats(-89, 89), angle)
 def test_of_the_angles_that_make_a_rotation_the_nearest_are_taken(x, y, z):
-    found = np.array(angles_of(rotation_of((x, y, z)), (x, y, z)))
-    off = (found - (x, y, z) + 180) % 360 - 180
-    assert np.abs(found).max() <= 180
+    result = np.array(angles_of(rotation_of((x, y, z)), (x, y, z)))
+    off = (result - (x, y, z) + 180) % 360 - 180
+    assert np.abs(result).max() <= 180
     assert np.abs(off).max() < 4  # within rounding, which near the pole weighs most
 
 
@@ -72,7 +74,7 @@ def test_the_error_is_told_and_coloured(state, rig, binding):
     assert error_of(state, memo) == (0.0, 0.0)
     state.turns = {1: (0, 40, 0)}
     scene = resolve(state, memo)
-    lengths = Gap(rig, binding.weights, rig.weights).lengths(scene.pose)
+    lengths = gap_between(rig, binding.weights, rig.weights).lengths(scene.pose)
     rms, greatest = error_of(state, memo)
     assert rms == pytest.approx(np.sqrt(np.square(lengths).mean()))
     assert greatest == pytest.approx(float(lengths.max()))
@@ -82,14 +84,37 @@ def test_the_error_is_told_and_coloured(state, rig, binding):
     assert scene.legend.high.endswith("mm")
 
 
+def test_dual_quaternions_move_the_same_weights_and_the_error_with_them(state, rig, binding):
+    memo = Memo()
+    state.param.update(heat=True, turns={1: (0, 120, 0)})
+    assert "blending" not in changes(Description(), resolve(state, memo), set())
+    linear = resolve(state, memo), error_of(state, memo)
+    state.blending = "dual"
+    scene, error = resolve(state, memo), error_of(state, memo)
+    message = changes(linear[0], scene, set(scene.actors))
+    assert message["blending"] == "dual"
+    assert "pose" not in message
+    assert not any({"points", "skin", "apart"} & part.keys() for part in message["actors"].values())
+    body = scene.actors["body"]
+    expected = cutcell.dual_quaternion_skinning(body.points, binding.weights, scene.pose)
+    np.testing.assert_allclose(body.points_in(scene.pose, scene.blending), expected, atol=1e-5)
+    apart = expected - cutcell.dual_quaternion_skinning(body.points, rig.weights, scene.pose)
+    unit = body.apart.unit
+    assert error[1] == pytest.approx(unit * np.linalg.norm(apart, axis=1).max(), rel=1e-3)
+    assert error != linear[1]
+    state.panel = "compare"
+    assert resolve(state).blending == "dual"
+    for panel in ("check", "weights"):
+        state.panel = panel
+        assert resolve(state).blending == "linear"
+
+
 def test_the_error_of_a_motion_is_known_once_it_was_measured(state, binding):
     state.param.update(moving=True, clip=0, heat=True)
     assert error_of(state, Memo()) is None
-    state.motion_error = (binding, "clip 0", (1.5, 40.0, 28.0))
+    state.motion_error = (1.5, 40.0, 28.0)
     assert error_of(state, Memo()) == (1.5, 40.0)
     assert resolve(state).actors["body"].limits == (0.0, 30.0)
-    state.clip = -1
-    assert error_of(state, Memo()) is None
 
 
 def test_a_small_turn_streams_nothing_but_the_pose(state):
@@ -120,9 +145,9 @@ def test_worst_turns_are_about_the_axes_that_the_page_turns_about(rig):
     other[:5] = 0  # these stand still
     errors = scene_error(rig, rig.weights, other)
     worst = errors.worst(1)[0]
-    rotations = joint_turns(rig, {worst.joint: turn(worst.axis, 30)})
+    rotations = joint_turns(rig, {worst.joint: axis_rotation(worst.axis, 30)})
     pose = pose_in_scene(rig, cutcell.forward_kinematics(rig.skeleton, rotations))
-    lengths = Gap(rig, rig.weights, other).lengths(pose)
+    lengths = gap_between(rig, rig.weights, other).lengths(pose)
     assert worst.largest == pytest.approx((lengths.max() / 10) ** 2, rel=1e-3)
     # The arm's space has z up and the scene y: the same turns, called by other names.
     plain = deformation_error(rig, rig.weights, other)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell_app.scenes import RIGID, Memo, following, resolve
-from cutcell_app.scenes.common import GRAPH_BODY_OPACITY, bones_part, cells_of, first_joint
-from cutcell_app.scenes.distance import field_of, wants_field
-from cutcell_app.scenes.graph import build_shown
-from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
-from cutcell_app.state import LAYERS, PANELS, State
+from cutcell_app.document.state import PANELS, State
+from cutcell_app.features.character import GRAPH_BODY_OPACITY, bones_part, cells_of, first_joint
+from cutcell_app.features.distance.scene import wants_field
+from cutcell_app.features.graph.choices import LAYERS
+from cutcell_app.features.graph.scene import build_shown
+from cutcell_app.features.pose.scene import clip_of, clip_part, pose_of
+from cutcell_app.features.scenes import RIGID, Memo, following, resolve
 from cutcell_viewers.palette import DARK, LIGHT
 
 
@@ -165,7 +166,7 @@ def test_the_distance_on_the_surface(state, binding):
     at_once = resolve(state)  # what lies inside comes later
     known = binding.distances.joint[state.joint]
     np.testing.assert_allclose(at_once.actors["body"].scalars, known, rtol=1e-6)
-    state.field = (binding.distances, 1, binding.distances.field(1))
+    state.field = binding.distances.field(1)
     scene = resolve(state)
     distance = binding.distances.on_mesh(1)
     np.testing.assert_allclose(scene.actors["body"].scalars, distance, rtol=1e-5, atol=1e-6)
@@ -177,16 +178,14 @@ def test_the_distance_on_the_surface(state, binding):
 def test_the_graph_opens_cut_away_with_all_its_kinds_and_easy_to_read(rig, binding):
     state = State(rig=rig, binding=binding, panel="graph", resolution=16)
     assert not visible(state) & set(LAYERS.values()) - {"body"}  # it is still to be built
-    state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs))
+    state.easy_graph = build_shown(state.graph_inputs)
     seen = visible(state)
     assert seen > {"mesh edges", "interior edges", "surface edges", "surface nodes"}
     scene = resolve(state)
     assert scene.cut is not None
     assert scene.legend.title == "Graph, R = 40 (weights: 16)"
     assert len(scene.actors["interior nodes"].cells) > 40
-    state.param.update(
-        edge_colors="distance", field=(binding.distances, 0, binding.distances.field(0))
-    )
+    state.param.update(edge_colors="distance", field=binding.distances.field(0))
     assert resolve(state).actors["interior edges"].scalars is not None
     state.param.update(graph_resolution=0, edge_colors="kind")
     assert resolve(state).legend.title == "Graph, R = 16"
@@ -196,7 +195,7 @@ def test_widths_follow_the_spacing_of_each_kind(state):
     state.panel = "graph"
     coarse = resolve(state).actors
     state.graph_resolution = 48
-    state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs))
+    state.easy_graph = build_shown(state.graph_inputs)
     fine = resolve(state).actors
     assert fine["mesh edges"].thick == coarse["mesh edges"].thick
     for name in ("interior edges", "interior nodes", "surface nodes"):
@@ -245,21 +244,13 @@ def test_the_character_rests_where_it_is_not_posed(state, panel):
     assert resolve(state).pose is None
 
 
-def test_the_field_is_used_only_for_its_own_joint_and_distances(state, binding):
+def test_a_cut_shows_the_field_once_it_is_there(state, binding):
     assert not wants_field(state)
     state.param.update(panel="distance", cut_axis="x")
     assert wants_field(state)
-    assert field_of(state) is None
     assert "inside" not in resolve(state).actors
-    field = binding.distances.field(1)
-    state.field = (binding.distances, 1, field)
-    assert field_of(state) is field
+    state.field = binding.distances.field(1)
     assert "inside" in resolve(state).actors
-    state.binding = replace(binding, weights=binding.weights.copy())
-    assert field_of(state) is field
-    state.joint = 2
-    assert field_of(state) is None
-    assert "inside" not in resolve(state).actors
 
 
 def test_a_joint_without_weight_has_no_field(state, rig):
@@ -289,7 +280,7 @@ def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
         assert (moving.visible, moving.opacity) == (True, 1.0)
     field = binding.distances.field(1)
     state.param.update(panel="distance", starts=True, vertex=0)
-    state.field = (binding.distances, 1, field)
+    state.field = field
     whole, moving = resolve(state).legend, following(state).legend
     assert {text for _, text in whole.swatches} > {RIGID}
     assert [text for _, text in moving.swatches] == [RIGID]
@@ -304,9 +295,9 @@ def test_the_graph_is_told_apart_by_form_and_its_nodes_can_be_looked_at(state, b
     nodes = [actors[f"{kind} nodes"] for kind in ("mesh", "interior", "surface")]
     assert [node.form for node in nodes] == ["round", "square", "triangle"]
     assert all(node.visible for node in nodes)
-    told = np.concatenate([node.reading.values for node in nodes]).astype(int)
-    np.testing.assert_array_equal(np.sort(told), np.flatnonzero(binding.graph.connected))
-    state.node = int(told[-1])
+    reports = np.concatenate([node.reading.values for node in nodes]).astype(int)
+    np.testing.assert_array_equal(np.sort(reports), np.flatnonzero(binding.graph.connected))
+    state.node = int(reports[-1])
     ring = resolve(state).actors["node ring"]
     assert len(ring.cells) == np.diff(binding.graph.adjacency[0])[state.node]
     state.edge_colors = "component"
@@ -317,7 +308,7 @@ def test_the_graph_is_told_apart_by_form_and_its_nodes_can_be_looked_at(state, b
 def test_any_angle_shows_the_lines_of_sight_of_a_vertex(state, binding):
     state.param.update(panel="graph", vertex=0, joint=2, connectivity="any")
     assert wants_field(state)
-    state.field = (binding.distances, 2, binding.distances.field(2))
+    state.field = binding.distances.field(2)
     scene = resolve(state)
     assert "path" in scene.actors
     assert "lines of sight" in scene.legend.swatches[0][1]

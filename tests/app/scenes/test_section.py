@@ -7,8 +7,8 @@ import pytest
 
 import cutcell
 from cutcell.diagnosis.finding import Finding, Pose
-from cutcell_app.scenes import Memo, resolve
-from cutcell_app.state import State
+from cutcell_app.document.state import State
+from cutcell_app.features.scenes import Memo, resolve
 from cutcell_viewers.finding_scene import camera_on, camera_on_marks
 from tests.viewers.arm import arm_rig
 
@@ -20,7 +20,7 @@ def state():
     state.binding = cutcell.bind(rig, 16)
     distances = state.binding.distances
     state.joint = 1
-    state.field = (distances, 1, distances.field(1))
+    state.field = distances.field(1)
     return state
 
 
@@ -49,11 +49,11 @@ def test_the_face_shows_what_is_chosen(state):
 
 def test_a_finding_is_shown_in_its_pose(state):
     rig = state.rig
-    found = Finding(
+    result = Finding(
         "stretched-edges", "warning", "", "", vertices=np.arange(30, 40), joints=np.array([1]),
         pose=Pose(1, "z", 60.0),
     )  # fmt: skip
-    state.param.update(panel="check", diagnosis={found.code: found}, finding=found.code)
+    state.param.update(panel="check", diagnosis={result.code: result}, finding=result.code)
     scene = resolve(state)
     assert scene.pose is not None
     assert scene.actors["body"].skin is not None
@@ -61,7 +61,7 @@ def test_a_finding_is_shown_in_its_pose(state):
     assert marks
     assert all(len(actor.skin.weights) == len(actor.points) for actor in marks)
     assert any("turned by 60°" in text for _, text in scene.legend.swatches)
-    one = camera_on(rig, found, scene.bounds)
-    at_rest = camera_on(rig, replace(found, pose=None), scene.bounds)
+    one = camera_on(rig, result, scene.bounds)
+    at_rest = camera_on(rig, replace(result, pose=None), scene.bounds)
     assert one.focal_point != at_rest.focal_point
     np.testing.assert_allclose(camera_on_marks(scene, 1.2).focal_point, one.focal_point, atol=0.05)

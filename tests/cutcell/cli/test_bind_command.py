@@ -19,9 +19,9 @@ def test_saves_what_the_library_computes(run, bar, tmp_path):
     assert result.exit_code == 0
     assert "12 vertices" in result.stdout
     expected = cutcell.bind(cutcell.load(bar), resolution=16).weights
-    found = cutcell.load(out)
-    assert found.skeleton.names == ("root", "tip")
-    np.testing.assert_allclose(found.weights, expected, atol=1e-6)
+    results = cutcell.load(out)
+    assert results.skeleton.names == ("root", "tip")
+    np.testing.assert_allclose(results.weights, expected, atol=1e-6)
 
 
 def test_options_reach_the_library(run, bar, tmp_path):
@@ -42,7 +42,6 @@ def test_options_reach_the_library(run, bar, tmp_path):
     document = json.loads(result.stdout)
     assert document["parameters"] == {
         **options,
-        "refine": "none",
         "orient": False,
         "symmetric": False,
         "locked": [],
@@ -79,8 +78,8 @@ def test_the_papers_influences_are_limited_in_gltf_and_the_command_says_what_it_
     assert document["influences"] == {"mean": 4.0, "most": 4}
     assert document["parameters"]["max_influences"] == 4
     expected = cutcell.bind(cutcell.load(path), 8, method="paper", max_influences=4).weights
-    found = cutcell.load(tmp_path / "out.glb").weights
-    np.testing.assert_allclose(found, expected, atol=1e-6)
+    results = cutcell.load(tmp_path / "out.glb").weights
+    np.testing.assert_allclose(results, expected, atol=1e-6)
     dropped = np.where(expected > 0, 0, every).sum(axis=1)
     (sentence,) = document["warnings"]
     assert "of up to 6 influences a vertex the 4 largest are saved" in sentence
@@ -131,9 +130,9 @@ def test_base_colours_are_saved_and_what_is_missing_is_told(run, bar, tmp_path):
     (sentence,) = json.loads(done.stdout)["warnings"]
     assert 'material "red" is used without' in sentence
     assert "its mesh has no texture coordinates" in sentence
-    found = read_materials(cutcell.load(tmp_path / "bound.glb"))
-    assert found.names == ("red",)
-    assert (found.body.tints == (255, 0, 0)).all()
+    result = read_materials(cutcell.load(tmp_path / "bound.glb"))
+    assert result.names == ("red",)
+    assert (result.body.tints == (255, 0, 0)).all()
 
 
 def test_takes_a_skeleton_from_elsewhere(run, tmp_path):
@@ -194,8 +193,8 @@ def test_every_ending_it_lets_through_can_be_saved(run, bar, tmp_path, ending):
 
 def test_a_mesh_without_a_skeleton_is_refused_by_name(run, tmp_path):
     path = write_obj(tmp_path / "alone.obj")
-    told = refused(run("bind", path, tmp_path / "out.glb"))
-    assert told.startswith("error: alone.obj: the rig has no skeleton; export the mesh")
+    reports = refused(run("bind", path, tmp_path / "out.glb"))
+    assert reports.startswith("error: alone.obj: the rig has no skeleton; export the mesh")
     assert not (tmp_path / "out.glb").exists()
 
 
@@ -238,23 +237,36 @@ def test_all_files_that_are_written_are_told(run, bar, tmp_path):
     assert (tmp_path / "two.bin").read_text() == "of something else"
 
 
-def test_corrections_of_a_file_are_applied(run, bar, tmp_path):
+def test_layers_of_a_file_are_applied(run, bar, tmp_path):
     rig = cutcell.load(bar)
     name = rig.skeleton.names[0]
-    path = tmp_path / "corrections.json"
-    cutcell.Corrections(vertices={0: {name: 1.0}}).save(path)
+    path = tmp_path / "edits.json"
+    layer = cutcell.Layer(cutcell.Painted([0], [name], [[1.0]]))
+    cutcell.Edits(layers=[layer]).save(path)
     out = tmp_path / "out.npz"
-    run("bind", bar, out, "-r", 16, "--corrections", path)
+    run("bind", bar, out, "-r", 16, "--layers", path)
     assert cutcell.load(out).weights[0].tolist() == [1.0] + [0.0] * (len(rig.skeleton.names) - 1)
     place = (rig.skeleton.joints[0] + 0.125).tolist()
-    correction = cutcell.JointCorrection(position=place)
-    cutcell.Corrections(joints={name: correction}).save(path)
-    run("bind", bar, tmp_path / "out.glb", "-r", 16, "--corrections", path)
+    moved = cutcell.JointEdit(position=place)
+    cutcell.Edits(joints={name: moved}).save(path)
+    run("bind", bar, tmp_path / "out.glb", "-r", 16, "--layers", path)
     moved = cutcell.load(tmp_path / "out.glb").skeleton.joints
     assert moved[0].tolist() == pytest.approx(place, abs=1e-6)
     assert moved[1:].tolist() == pytest.approx(rig.skeleton.joints[1:], abs=1e-6)
-    path.write_text('{"joints": {"nobody": {"gain": 2}}}')
-    assert 'no joint "nobody"' in refused(run("bind", bar, out, "-r", 16, "--corrections", path))
+    path.write_text('{"joints": {"nobody": {"deform": true}}}')
+    assert 'no joint "nobody"' in refused(run("bind", bar, out, "-r", 16, "--layers", path))
+
+
+def test_the_method_of_layers_is_taken_unless_an_option_says_otherwise(run, bar, tmp_path):
+    path, out = tmp_path / "edits.json", tmp_path / "out.npz"
+    cutcell.Edits(method={"resolution": 16, "falloff": "paper", "alpha": 0.3}).save(path)
+    document = json.loads(run("bind", bar, out, "--layers", path, "--json").stdout)
+    stored = {name: document["parameters"][name] for name in ("resolution", "falloff", "alpha")}
+    assert stored == {"resolution": 16, "falloff": "paper", "alpha": 0.3}
+    expected = cutcell.bind(cutcell.load(bar), 16, falloff="paper", alpha=0.3).weights
+    np.testing.assert_array_equal(cutcell.load(out).weights, expected)
+    document = json.loads(run("bind", bar, out, "--layers", path, "-r", 20, "--json").stdout)
+    assert document["parameters"]["resolution"] == 20
 
 
 def test_a_template_is_fitted_into_a_mesh_without_a_skeleton(run, tmp_path):
@@ -262,17 +274,17 @@ def test_a_template_is_fitted_into_a_mesh_without_a_skeleton(run, tmp_path):
     out = tmp_path / "bound.glb"
     document = json.loads(run("bind", mesh, out, "-r", 16, "--template", "chain", "--json").stdout)
     assert document["template"] == "chain"
-    found = cutcell.load(out)
-    assert found.skeleton.names == tuple(f"bone.{n}" for n in range(1, 6))
-    assert np.ptp(found.skeleton.joints[:, 2]) > 1
-    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-5)
+    result = cutcell.load(out)
+    assert result.skeleton.names == tuple(f"bone.{n}" for n in range(1, 6))
+    assert np.ptp(result.skeleton.joints[:, 2]) > 1
+    np.testing.assert_allclose(result.weights.sum(axis=1), 1, atol=1e-5)
     for ending in ("txt", "npz"):
         assert (
             run("bind", mesh, tmp_path / f"b.{ending}", "-r", 16, "--template", "chain").exit_code
             == 0
         )
         again = cutcell.load(tmp_path / f"b.{ending}")
-        np.testing.assert_allclose(again.skeleton.joints, found.skeleton.joints, atol=1e-4)
+        np.testing.assert_allclose(again.skeleton.joints, result.skeleton.joints, atol=1e-4)
 
 
 def test_templates_that_cannot_be_are_refused(run, bar, tmp_path):
@@ -285,7 +297,7 @@ def test_templates_that_cannot_be_are_refused(run, bar, tmp_path):
     assert not out.exists()
 
 
-def test_corrections_may_bring_the_skeleton(run, tmp_path):
+def test_edits_may_bring_the_skeleton(run, tmp_path):
     mesh, held = write_obj(tmp_path / "bare.obj"), tmp_path / "held.json"
     joints = {
         "root": {"added": True, "position": [0.5, 0.5, 0.2], "parent": ""},
@@ -293,5 +305,5 @@ def test_corrections_may_bring_the_skeleton(run, tmp_path):
     }
     held.write_text(json.dumps({"joints": joints}))
     out = tmp_path / "bound.glb"
-    assert run("bind", mesh, out, "-r", 16, "--corrections", held).exit_code == 0
+    assert run("bind", mesh, out, "-r", 16, "--layers", held).exit_code == 0
     assert cutcell.load(out).skeleton.names == ("root", "tip")

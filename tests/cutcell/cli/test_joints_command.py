@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 import cutcell
-from tests.cutcell.cli.files import refused
+from tests.cutcell.cli.files import refused, write_obj
 
 
 def test_lists_joints_with_reasons(run, demo_paths):
@@ -28,6 +28,21 @@ def test_says_what_was_chosen(run, demo_paths):
     assert all(row == {**row, "deform": False, "reason": "chosen"} for row in hands)
 
 
+def test_doubtful_joints_are_named_and_may_be_left_out(run, tmp_path):
+    joints = [
+        {"name": name, "position": [x, 0.1, 0.1], "parent": parent}
+        for name, x, parent in (("hip", 0.1, None), ("knee", 0.5, "hip"), ("IK", 0.8, "knee"))
+    ]
+    path = write_obj(tmp_path / "leg.obj", joints=joints)
+    assert "joints that may be controls or end markers get weight: IK" in run("joints", path).stderr
+    rows = json.loads(run("joints", path, "--json").stdout)["joints"]
+    assert [row["doubtful"] for row in rows] == [False, False, True]
+    assert rows[2]["deform"]
+    assert "doubtful · control or bone, by its name" in run("joints", path).stdout
+    rows = json.loads(run("joints", path, "--no-deform", "IK", "--json").stdout)["joints"]
+    assert [row["doubtful"] for row in rows] == [False] * 3
+
+
 def test_bind_takes_the_choice(run, demo_paths, tmp_path):
     path = next(path for path in demo_paths if path.stem == "biped")
     out = tmp_path / "bound.glb"
@@ -42,5 +57,5 @@ def test_bind_takes_the_choice(run, demo_paths, tmp_path):
 
 def test_a_wrong_name_is_told(run, demo_paths, tmp_path):
     path = next(path for path in demo_paths if path.stem == "biped")
-    told = refused(run("bind", path, tmp_path / "out.glb", "--no-deform", "hnad.L"))
-    assert 'biped.glb: no joint is called "hnad.L"; did you mean hand.L' in told
+    reports = refused(run("bind", path, tmp_path / "out.glb", "--no-deform", "hnad.L"))
+    assert 'biped.glb: no joint is called "hnad.L"; did you mean hand.L' in reports

@@ -45,15 +45,15 @@ class TestWrongInput:
     def test_wrong_content(self, run, tmp_path, command, case):
         changed, sentence = WRONG[case]
         rig = write_obj(tmp_path / "wrong.obj", **{"joints": JOINTS, **changed})
-        told = refused(run(*self.words(command, rig, tmp_path)))
-        assert re.search(sentence, told)
-        assert re.search(r"wrong\.(obj|json)", told)
+        reports = refused(run(*self.words(command, rig, tmp_path)))
+        assert re.search(sentence, reports)
+        assert re.search(r"wrong\.(obj|json)", reports)
 
     @pytest.mark.parametrize("resolution", [1, 10_000, -3])
     def test_resolution_out_of_range(self, run, bar, tmp_path, command, resolution):
         words = self.words(command, bar, tmp_path)
-        told = refused(run(*words, "--resolution", resolution))
-        assert "resolution must be a whole number from 2 to 1,024" in told
+        reports = refused(run(*words, "--resolution", resolution))
+        assert "resolution must be a whole number from 2 to 1,024" in reports
         assert not (tmp_path / "out.glb").exists()
 
     @pytest.mark.parametrize(
@@ -67,8 +67,8 @@ class TestWrongInput:
         ],
     )
     def test_parameter_out_of_range(self, run, bar, tmp_path, command, option, value):
-        told = refused(run(*self.words(command, bar, tmp_path), f"--{option}", value))
-        assert f"{option.replace('-', '_')} must be" in told
+        reports = refused(run(*self.words(command, bar, tmp_path), f"--{option}", value))
+        assert f"{option.replace('-', '_')} must be" in reports
 
 
 @pytest.mark.parametrize(
@@ -76,5 +76,5 @@ class TestWrongInput:
     [("falloff", "steep"), ("alpha", 2), ("max-influences", 0), ("threshold", -1)],
 )
 def test_weights_parameter_out_of_range(run, bar, tmp_path, option, value):
-    told = refused(run("bind", bar, tmp_path / "out.glb", f"--{option}", value))
-    assert f"{option.replace('-', '_')} must be" in told
+    reports = refused(run("bind", bar, tmp_path / "out.glb", f"--{option}", value))
+    assert f"{option.replace('-', '_')} must be" in reports

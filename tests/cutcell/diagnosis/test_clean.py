@@ -22,7 +22,7 @@ BIPED = cutcell.load(demo_path("biped"))
 
 def slow_connected(weights, anchored, edges):
     """Connect one joint by lowering a threshold over its values: flood fill above each."""
-    found = np.where(anchored, weights, 0.0)
+    result = np.where(anchored, weights, 0.0)
     for level in np.unique(weights[weights > 0]):
         above = weights >= level
         seen = {v for v in np.flatnonzero(anchored & above).tolist()}
@@ -31,8 +31,8 @@ def slow_connected(weights, anchored, edges):
             more = {int(b) for a, b in [*edges, *edges[:, ::-1]] if a in seen and above[b]} - seen
             seen, grown = seen | more, bool(more)
         for v in seen:
-            found[v] = max(found[v], level)
-    return found
+            result[v] = max(result[v], level)
+    return result
 
 
 @settings(max_examples=60)
@@ -43,9 +43,9 @@ def test_connected_weights_are_those_of_flood_fills(seed):
     edges = rng.integers(0, count, (int(rng.integers(0, 20)), 2)).astype(np.int32)
     weights = rng.integers(0, 6, (count, 3)) / 5
     anchored = rng.random((count, 3)) < 0.25
-    found = connected_weights(weights, anchored, edges)
+    result = connected_weights(weights, anchored, edges)
     for j in range(3):
-        assert np.array_equal(found[:, j], slow_connected(weights[:, j], anchored[:, j], edges))
+        assert np.array_equal(result[:, j], slow_connected(weights[:, j], anchored[:, j], edges))
 
 
 def test_of_an_island_no_more_is_left_than_in_the_valley_around_it():
@@ -120,13 +120,12 @@ def test_what_was_attached_as_a_whole_stays():
     assert np.array_equal(cutcell.clean(rig, 24).weights[count:], weights[count:])
 
 
-def test_torn_seams_and_odd_sums_stay_as_they_are():
+def test_torn_seams_stay_as_they_are():
     twice = np.concatenate([WORM.mesh.vertices, WORM.mesh.vertices])
     mesh = TriangleMesh(twice, WORM.mesh.faces)
-    weights = np.concatenate([WORM.weights, np.roll(WORM.weights, 1, axis=1) * 0.5])
+    weights = np.concatenate([WORM.weights, np.roll(WORM.weights, 1, axis=1)])
     cleaned = cutcell.clean(Rig(mesh, WORM.skeleton, weights=weights), 24).weights
     assert np.array_equal(cleaned[: len(WORM.weights)], WORM.weights)
-    np.testing.assert_allclose(cleaned.sum(axis=1), weights.sum(axis=1))
 
 
 def test_it_keeps_what_the_file_can_store():

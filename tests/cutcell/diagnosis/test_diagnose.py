@@ -28,10 +28,10 @@ PLANTED = {
 @pytest.mark.slow
 @pytest.mark.parametrize("demo", PLANTED)
 def test_the_planted_faults_of_the_broken_demos_are_named(demo):
-    found = cutcell.diagnose(cutcell.load(demo_path(demo)), 32)
-    assert {f.code for f in found.findings} >= PLANTED[demo]
-    assert not found.of("error")
-    assert {f.code for f in found.of("warning")} <= PLANTED[demo]
+    result = cutcell.diagnose(cutcell.load(demo_path(demo)), 32)
+    assert {f.code for f in result.findings} >= PLANTED[demo]
+    assert not result.of("error")
+    assert {f.code for f in result.of("warning")} <= PLANTED[demo]
 
 
 @pytest.mark.slow
@@ -45,37 +45,37 @@ def test_the_flipped_arm_is_found_face_by_face():
 @pytest.mark.slow
 @pytest.mark.parametrize("demo", ["biped", "rabbit", "octopus"])
 def test_nothing_is_found_in_the_sound_demos_but_that_32_cells_are_few(demo):
-    found = cutcell.diagnose(cutcell.load(demo_path(demo)), 32).findings
-    assert {f.code for f in found} <= {"thin-parts"}
+    result = cutcell.diagnose(cutcell.load(demo_path(demo)), 32).findings
+    assert {f.code for f in result} <= {"thin-parts"}
 
 
 def test_findings_come_with_the_gravest_first_and_as_plain_data():
     mesh = TriangleMesh(WORM.mesh.vertices, np.roll(WORM.mesh.faces, 5, axis=0)[20:])
     weights = WORM.weights.copy()
     weights[30:40] = 0
-    found = cutcell.diagnose(replace(WORM, mesh=mesh, weights=weights), 16)
-    severities = [f.severity for f in found.findings]
+    result = cutcell.diagnose(replace(WORM, mesh=mesh, weights=weights), 16)
+    severities = [f.severity for f in result.findings]
     assert severities == sorted(severities, key=["error", "warning", "note"].index)
     assert severities[0] == "error"
-    assert "unweighted-vertices" in found
-    data = json.loads(json.dumps(found.to_dict()))
-    assert data["counts"] == found.counts
+    assert "unweighted-vertices" in result
+    data = json.loads(json.dumps(result.to_dict()))
+    assert data["counts"] == result.counts
     first = data["findings"][0]
     assert first["code"] == "unweighted-vertices"
     assert first["vertices"] == list(range(30, 40))
     assert first["repair"]
     with pytest.raises(KeyError):
-        found["no-such-code"]
+        result["no-such-code"]
 
 
 def test_known_distances_are_used_as_they_are():
     binding = cutcell.bind(WORM, resolution=16)
     stages = []
-    found = cutcell.diagnose(
+    result = cutcell.diagnose(
         WORM, distances=binding.distances, progress=lambda stage, _: stages.append(stage)
     )
     assert set(stages) == {"checks"}
-    assert found.findings == ()
+    assert result.findings == ()
 
 
 def test_a_mesh_without_joints_is_diagnosed():
@@ -100,8 +100,8 @@ def test_a_component_without_a_bone_is_told_with_what_it_follows():
     button = trimesh.creation.icosphere(subdivisions=1, radius=0.03)
     vertices = np.concatenate([WORM.mesh.vertices, button.vertices + np.array([0.9, 0.12, 0])])
     faces = np.concatenate([WORM.mesh.faces, button.faces + len(WORM.mesh.vertices)])
-    found = cutcell.diagnose(Rig(TriangleMesh(vertices, faces), WORM.skeleton), 32)
-    finding = found["boneless-components"]
+    result = cutcell.diagnose(Rig(TriangleMesh(vertices, faces), WORM.skeleton), 32)
+    finding = result["boneless-components"]
     assert np.array_equal(finding.vertices, np.arange(len(WORM.mesh.vertices), len(vertices)))
     assert finding.details == (f"{len(button.vertices)} vertices follow head",)
 
@@ -121,10 +121,10 @@ def test_self_intersections_agree_with_cgal(seed):
     vertices = (rng.random((40, 1, 3)) + 0.5 * rng.random((40, 3, 3))).reshape(-1, 3)
     faces = np.arange(120).reshape(40, 3)
     pairs = remesh_self_intersections(vertices, faces, detect_only=True)[2]
-    found, is_whole = intersecting_faces(vertices, faces.astype(np.int32))
+    result, is_whole = intersecting_faces(vertices, faces.astype(np.int32))
     assert is_whole
     assert 8 < len(np.unique(pairs)) < 38
-    assert np.array_equal(np.flatnonzero(found), np.unique(pairs))
+    assert np.array_equal(np.flatnonzero(result), np.unique(pairs))
 
 
 def test_bad_arguments_are_refused():

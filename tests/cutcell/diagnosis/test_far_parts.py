@@ -44,8 +44,9 @@ def test_a_part_that_follows_a_far_joint_is_named_with_the_nearest(joint):
     assert nearest in (5, 6)
     assert finding.details[0].startswith(f"Part 2 ({len(part)} vertices)")
     assert finding.to_dict()["parts"] == [[vertex, nearest]]
-    glued = cutcell.PartCorrection("glued", rig.skeleton.names[nearest])
-    bound = cutcell.bind(rig, 24, corrections=cutcell.Corrections(parts={vertex: glued}))
+    glued = cutcell.Filled({rig.skeleton.names[nearest]: 1})
+    layer = cutcell.Layer(glued, cutcell.Mask(part=vertex))
+    bound = cutcell.bind(rig, 24, edits=cutcell.Edits(layers=[layer]))
     after = cutcell.diagnose(rig.with_weights(bound.weights), 24, only_weights=True)
     assert "far-parts" not in after
 

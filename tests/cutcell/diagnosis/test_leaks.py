@@ -58,12 +58,12 @@ def test_an_island_is_found_and_torn_edges_are_seen_in_the_pose_that_is_named():
     island = np.flatnonzero(WORM.mesh.vertices[:, 0] > 0.93)
     weights[island] = 0
     weights[island, 1] = 1.0  # the head follows the tail
-    found = cutcell.diagnose(WORM.with_weights(weights), 24)
-    finding = found["weight-islands"]
+    result = cutcell.diagnose(WORM.with_weights(weights), 24)
+    finding = result["weight-islands"]
     assert finding.joints.tolist() == [1]
     assert np.isin(finding.vertices, island).all()
     assert len(finding.vertices) >= len(island) / 2
-    torn = found["stretched-edges"]
+    torn = result["stretched-edges"]
     assert isinstance(torn.pose, Pose)
     turned = rotate_joint(WORM.skeleton, torn.pose.joint, torn.pose.axis, torn.pose.degrees)
     posed = linear_blend_skinning(WORM.mesh.vertices, weights, turned)
@@ -78,13 +78,13 @@ def test_an_island_is_found_and_torn_edges_are_seen_in_the_pose_that_is_named():
 def test_faces_that_flip_and_volume_that_is_lost_are_found():
     rng = np.random.default_rng(2)
     weights = rng.dirichlet(np.full(7, 0.2), len(WORM.mesh.vertices))
-    found = cutcell.diagnose(WORM.with_weights(weights), 24)
-    assert len(found["flipped-faces"].faces) > 10
-    assert found["flipped-faces"].pose.degrees in (-45, 45)
+    result = cutcell.diagnose(WORM.with_weights(weights), 24)
+    assert len(result["flipped-faces"].faces) > 10
+    assert result["flipped-faces"].pose.degrees in (-45, 45)
     half = np.zeros_like(weights)
     half[:, 0], half[:, 3] = 0.5, 0.5  # all of the body half way between two joints
-    found = cutcell.diagnose(WORM.with_weights(half), 24)
-    assert found["lost-volume"].joints.tolist()
+    result = cutcell.diagnose(WORM.with_weights(half), 24)
+    assert result["lost-volume"].joints.tolist()
 
 
 def test_left_and_right_that_differ_are_found():

@@ -77,8 +77,8 @@ def test_what_is_not_safe_is_not_offered(tmp_path):
 
 def test_everything_that_can_be_is_repaired_at_once(tmp_path):
     _, before = damaged("weights no numbers", tmp_path)
-    found = {f.code for f in before.findings}
-    assert found - SWEEP == {"invalid-weights", "unweighted-vertices"}
+    result = {f.code for f in before.findings}
+    assert result - SWEEP == {"invalid-weights", "unweighted-vertices"}
     assert {f.code for f in cutcell.diagnose(before.repaired().rig, 24).findings} <= SWEEP
 
 

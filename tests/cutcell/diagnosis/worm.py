@@ -6,7 +6,7 @@ import trimesh
 from cutcell import Rig, Skeleton, TriangleMesh
 
 ALONG = np.linspace(0.1, 0.9, 7)
-SWEEP = {"stretched-edges", "flipped-faces", "lost-volume"}
+SWEEP = {"stretched-surface", "stretched-edges", "flipped-faces", "lost-volume"}
 """Findings of a sweep of poses, which any change of weights may bring or take away."""
 NAMES = ("root", "tail", "hip", "spine", "chest", "neck", "head")
 

@@ -15,11 +15,15 @@ from cutcell import (
 )
 from cutcell.editing import refine_weights
 from cutcell.editing.locks import joint_index, lock_joints
-from cutcell.editing.refine import smooth_weights
-from cutcell.editing.symmetry import find_mirror
+from cutcell.editing.selections import Neighbours
+from cutcell.editing.symmetry import find_mirror, mirrored
 from tests import meshes
 
 RNG = np.random.default_rng(7)
+
+
+def smooth_weights(mesh, weights, passes):
+    return Neighbours.of(mesh).smooth(weights, passes)
 
 
 def strip(count=6):
@@ -95,6 +99,24 @@ def test_a_vertex_without_edges_keeps_its_weights():
     np.testing.assert_array_equal(smooth_weights(mesh, weights, 5)[3], weights[3])
 
 
+@pytest.mark.parametrize("passes", [1, 4])
+def test_some_vertices_are_smoothed_as_in_the_whole_mesh(passes):
+    mesh = strip(9)
+    weights, some = random_weights(18, 5), np.array([0, 7, 8, 17])
+    neighbours = Neighbours.of(mesh)
+    whole = neighbours.smooth(weights, passes)
+    np.testing.assert_array_equal(neighbours.smooth(weights, passes, some), whole[some])
+
+
+def test_smoothing_through_the_body_joins_shells_that_are_close():
+    mesh = strip(3)
+    vertices = np.concatenate([mesh.vertices, mesh.vertices + np.array([0, 0, 0.1])])
+    shells = TriangleMesh(vertices, np.concatenate([mesh.faces, mesh.faces + 6]))
+    weights = one_hot(np.repeat([0, 1], 6), 2)
+    np.testing.assert_allclose(smooth_weights(shells, weights, 3), weights, atol=1e-12)
+    assert (Neighbours.of(shells, within=0.15).smooth(weights, 3) > 0).all()
+
+
 @pytest.mark.parametrize("passes", [-1, 1.5, 1001, "many"])
 def test_wrong_number_of_passes(passes):
     with pytest.raises(ParameterError, match="smoothing must be a whole number from 0 to 1,000"):
@@ -129,6 +151,21 @@ def test_symmetric_weights_are_mirrored(influences):
     np.testing.assert_allclose(found[paired][off_plane], other[off_plane], atol=1e-12)
     if influences > 1:  # one influence cannot be shared between left and right
         np.testing.assert_allclose(found[paired], other, atol=1e-12)
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
+def test_one_side_is_taken_for_the_other(side, sign):
+    rig = mirrored_rig()
+    mirror, points = find_mirror(rig), rig.mesh.vertices
+    weights = random_weights(len(points), 4)
+    found = mirrored(weights, mirror, points, side)
+    taken = sign * points[:, 0] > 1e-9
+    np.testing.assert_array_equal(found[taken], weights[taken])
+    other = np.flatnonzero((sign * points[:, 0] < -1e-9) & (mirror.vertex >= 0))
+    expected = weights[mirror.vertex[other]][:, mirror.joint]
+    np.testing.assert_array_equal(found[other], expected)
+    some = other[::3]
+    np.testing.assert_array_equal(mirrored(weights, mirror, points, side, some), found[some])
 
 
 def test_joints_at_one_place_are_paired_by_their_branches():

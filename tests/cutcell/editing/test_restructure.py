@@ -1,19 +1,19 @@
-"""Skeletons whose joints are added, removed, renamed and reparented by corrections."""
+"""Skeletons whose joints are added, removed, renamed and reparented by edits."""
 
 import numpy as np
 import pytest
 
 import cutcell
-from cutcell import Corrections, JointCorrection, ParameterError, SkeletonError
+from cutcell import Edits, JointEdit, ParameterError, SkeletonError
 from cutcell.rig import Rig, Skeleton
 from tests.viewers.arm import arm_rig
 
-TIP = JointCorrection(added=True, position=(1.3, 0, 0), parent="wrist")
+TIP = JointEdit(added=True, position=(1.3, 0, 0), parent="wrist")
 
 
 def rig_of(**corrected):
     removed = corrected.pop("removed", ())
-    return cutcell.corrected_rig(arm_rig(), Corrections(joints=corrected, removed=removed))
+    return cutcell.edited_rig(arm_rig(), Edits(joints=corrected, removed=removed))
 
 
 def test_a_joint_is_added():
@@ -44,31 +44,31 @@ def test_a_root_is_removed():
 
 
 def test_a_joint_is_renamed_and_corrected_by_its_new_name():
-    rig = rig_of(bend=JointCorrection(was="elbow", position=(0.2, 0, 0)))
+    rig = rig_of(bend=JointEdit(was="elbow", position=(0.2, 0, 0)))
     assert rig.skeleton.names == ("shoulder", "bend", "wrist")
     assert rig.skeleton.joints[1].tolist() == [0.2, 0, 0]
     np.testing.assert_array_equal(rig.weights, arm_rig().weights)
-    swapped = rig_of(elbow=JointCorrection(was="wrist"), wrist=JointCorrection(was="elbow"))
+    swapped = rig_of(elbow=JointEdit(was="wrist"), wrist=JointEdit(was="elbow"))
     assert swapped.skeleton.names == ("shoulder", "wrist", "elbow")
 
 
 def test_a_joint_is_reparented_and_moves_against_its_parent_as_it_did():
-    own, rig = arm_rig(), rig_of(wrist=JointCorrection(parent="shoulder"))
+    own, rig = arm_rig(), rig_of(wrist=JointEdit(parent="shoulder"))
     assert rig.skeleton.parents.tolist() == [-1, 0, 0]
     before, now = own.clips[0].sample(1.0), rig.clips[0].sample(1.0)
     local = np.linalg.inv(before[1]) @ before[2]
     np.testing.assert_allclose(now[2], before[0] @ local, atol=1e-12)
-    free = rig_of(wrist=JointCorrection(parent=""))
+    free = rig_of(wrist=JointEdit(parent=""))
     assert free.skeleton.parents.tolist() == [-1, 0, -1]
 
 
 def test_it_is_done_once():
-    corrections = Corrections({"tip": TIP, "bend": JointCorrection(was="elbow")})
-    once = cutcell.corrected_rig(arm_rig(), corrections)
-    twice = cutcell.corrected_rig(once, corrections)
+    edits = Edits({"tip": TIP, "bend": JointEdit(was="elbow")})
+    once = cutcell.edited_rig(arm_rig(), edits)
+    twice = cutcell.edited_rig(once, edits)
     assert twice.skeleton.names == once.skeleton.names
-    a = cutcell.bind(arm_rig(), 16, corrections=corrections)
-    b = cutcell.bind(once, 16, corrections=corrections)
+    a = cutcell.bind(arm_rig(), 16, edits=edits)
+    b = cutcell.bind(once, 16, edits=edits)
     np.testing.assert_array_equal(a.weights, b.weights)
 
 
@@ -79,7 +79,7 @@ def test_orientations_and_skins_go_along():
     allowed = np.ones((len(own.mesh.vertices), 3), bool)
     allowed[:5, 2] = False
     rig = Rig(own.mesh, skeleton, allowed=allowed)
-    made = cutcell.corrected_rig(rig, Corrections({"tip": TIP}, removed=["shoulder"]))
+    made = cutcell.edited_rig(rig, Edits({"tip": TIP}, removed=["shoulder"]))
     np.testing.assert_array_equal(made.skeleton.orientations, axes[[1, 2, 2]])
     np.testing.assert_array_equal(made.allowed, allowed[:, [1, 2, 2]])
 
@@ -87,30 +87,30 @@ def test_orientations_and_skins_go_along():
 def test_a_mesh_without_a_skeleton_gets_one():
     bare = Rig(arm_rig().mesh, Skeleton([], []))
     joints = {
-        "root": JointCorrection(added=True, position=(-1, 0, 0), parent=""),
-        "end": JointCorrection(added=True, position=(1, 0, 0), parent="root", deform=False),
+        "root": JointEdit(added=True, position=(-1, 0, 0), parent=""),
+        "end": JointEdit(added=True, position=(1, 0, 0), parent="root", deform=False),
     }
-    rig = cutcell.corrected_rig(bare, Corrections(joints))
+    rig = cutcell.edited_rig(bare, Edits(joints))
     assert rig.skeleton.parents.tolist() == [-1, 0]
     assert rig.skeleton.deform.tolist() == [True, False]
-    assert cutcell.bind(bare, 16, corrections=Corrections(joints)).weights.shape[1] == 2
+    assert cutcell.bind(bare, 16, edits=Edits(joints)).weights.shape[1] == 2
     with pytest.raises(ParameterError, match="the mesh has no skeleton"):
-        cutcell.corrected_rig(bare, Corrections({"hip": JointCorrection(gain=2)}))
+        cutcell.edited_rig(bare, Edits({"hip": JointEdit(deform=True)}))
 
 
 @pytest.mark.parametrize(
     ("corrected", "kind", "says"),
     [
         ({"wrist": TIP}, SkeletonError, 'two joints would be called "wrist"'),
-        ({"wrist": JointCorrection(was="elbow")}, SkeletonError, 'would be called "wrist"'),
-        ({" ": JointCorrection(was="elbow")}, SkeletonError, "needs a name"),
-        ({"elbow": JointCorrection(parent="wrist")}, SkeletonError, "elbow"),
-        ({"elbow": JointCorrection(parent="knee")}, ParameterError, 'hang on "knee"'),
-        ({"arm": JointCorrection(was="knee")}, ParameterError, 'no joint "knee"'),
+        ({"wrist": JointEdit(was="elbow")}, SkeletonError, 'would be called "wrist"'),
+        ({" ": JointEdit(was="elbow")}, SkeletonError, "needs a name"),
+        ({"elbow": JointEdit(parent="wrist")}, SkeletonError, "elbow"),
+        ({"elbow": JointEdit(parent="knee")}, ParameterError, 'hang on "knee"'),
+        ({"arm": JointEdit(was="knee")}, ParameterError, 'no joint "knee"'),
         ({"removed": ["knee"]}, ParameterError, 'no joint "knee"'),
         ({"removed": ["shoulder", "elbow", "wrist"]}, SkeletonError, "no joint of the skel"),
         (
-            {"bend": JointCorrection(was="elbow"), "removed": ["elbow"]},
+            {"bend": JointEdit(was="elbow"), "removed": ["elbow"]},
             ParameterError,
             "both remove and rename",
         ),
@@ -131,9 +131,9 @@ def test_what_cannot_be_is_said(corrected, kind, says):
         ({"was": 3}, "was must be the name of a joint"),
     ],
 )
-def test_corrections_that_are_none_are_refused(made, says):
+def test_edits_that_are_none_are_refused(made, says):
     with pytest.raises(ParameterError, match=says):
-        JointCorrection(**made)
+        JointEdit(**made)
 
 
 @pytest.mark.parametrize(
@@ -141,42 +141,42 @@ def test_corrections_that_are_none_are_refused(made, says):
 )
 def test_what_is_removed_is_a_list_of_names(removed, says):
     with pytest.raises(ParameterError, match=says):
-        Corrections(removed=removed)
+        Edits(removed=removed)
 
 
 def test_the_structure_is_kept_as_json():
-    made = Corrections(
-        {"tip": TIP, "bend": JointCorrection(was="elbow", parent="")}, removed=["wrist", "wrist"]
+    made = Edits(
+        {"tip": TIP, "bend": JointEdit(was="elbow", parent="")}, removed=["wrist", "wrist"]
     )
     assert made.structural
-    assert Corrections(removed=["wrist"]).structural
-    assert not Corrections({"elbow": JointCorrection(gain=2)}).structural
-    assert Corrections.from_json(made.to_json()) == made
+    assert Edits(removed=["wrist"]).structural
+    assert not Edits({"elbow": JointEdit(deform=False)}).structural
+    assert Edits.from_json(made.to_json()) == made
     assert made.removed == ("wrist",)
 
 
-def test_the_same_corrections_change_nothing_again():
-    corrections = Corrections(joints={"tip": TIP}, removed=["elbow"])
-    rig = cutcell.corrected_rig(arm_rig(), corrections)
-    again = cutcell.corrected_rig(rig, corrections)
+def test_the_same_edits_change_nothing_again():
+    edits = Edits(joints={"tip": TIP}, removed=["elbow"])
+    rig = cutcell.edited_rig(arm_rig(), edits)
+    again = cutcell.edited_rig(rig, edits)
     assert again.skeleton.names == rig.skeleton.names
     np.testing.assert_array_equal(again.weights, rig.weights)
-    assert cutcell.bind(rig, 16, corrections=corrections).weights.shape[1] == 3
+    assert cutcell.bind(rig, 16, edits=edits).weights.shape[1] == 3
 
 
 @pytest.mark.parametrize(
-    "corrections",
+    "edits",
     [
-        Corrections(removed=["wrist"]),
-        Corrections(removed=["nobody"]),
-        Corrections(joints={"tip": TIP}, removed=["elbow", "nobody"]),
-        Corrections(joints={"bend": JointCorrection(was="nobody")}),
-        Corrections(joints={"tip": TIP}),
-        Corrections(joints={"tip": TIP, "wrist": JointCorrection(parent="tip")}, removed=["elbow"]),
-        Corrections(joints={"other": TIP}, removed=["elbow"]),
+        Edits(removed=["wrist"]),
+        Edits(removed=["nobody"]),
+        Edits(joints={"tip": TIP}, removed=["elbow", "nobody"]),
+        Edits(joints={"bend": JointEdit(was="nobody")}),
+        Edits(joints={"tip": TIP}),
+        Edits(joints={"tip": TIP, "wrist": JointEdit(parent="tip")}, removed=["elbow"]),
+        Edits(joints={"other": TIP}, removed=["elbow"]),
     ],
 )
-def test_other_corrections_of_a_corrected_rig_are_refused(corrections):
+def test_other_edits_of_an_edited_rig_are_refused(edits):
     rig = rig_of(tip=TIP, removed=["elbow"])
     with pytest.raises((ParameterError, SkeletonError)):
-        cutcell.corrected_rig(rig, corrections)
+        cutcell.edited_rig(rig, edits)

@@ -24,16 +24,16 @@ def halves():
 def test_the_limit_to_nearest_joints_holds_among_allowed_ones(make):
     allowed = make()
     every = bone_distances(GRAPH, RIG.skeleton, allowed=allowed, nearest_joints=1000).joint
-    found = bone_distances(GRAPH, RIG.skeleton, allowed=allowed)
-    assert found.nearest_joints == 3
-    measured = np.isfinite(found.joint)
+    result = bone_distances(GRAPH, RIG.skeleton, allowed=allowed)
+    assert result.nearest_joints == 3
+    measured = np.isfinite(result.joint)
     assert not measured[~allowed.T].any()
     assert measured.sum(axis=0).max() < 10 < np.isfinite(every).sum(axis=0).max()
     nearest = np.argsort(every, axis=0, kind="stable")[:1]
     assert np.take_along_axis(measured, nearest, axis=0).all()
-    np.testing.assert_allclose(found.joint[measured], every[measured], atol=1e-9)
-    assert not np.isfinite(found.all_joints()[~allowed.T]).any()
-    np.testing.assert_array_equal(found.fallback, 0)
+    np.testing.assert_allclose(result.joint[measured], every[measured], atol=1e-9)
+    assert not np.isfinite(result.all_joints()[~allowed.T]).any()
+    np.testing.assert_array_equal(result.fallback, 0)
 
 
 def test_where_all_are_allowed_weights_are_those_without_a_choice():
@@ -72,5 +72,5 @@ def test_vertices_that_only_other_joints_reach_have_a_reason():
     graph = cutcell.build_graph((vertices, faces), 64)
     skeleton = cutcell.Skeleton(joints, parents)
     crossed = np.kron([[0, 1], [1, 0]], np.ones_like(allowed)).astype(bool)
-    found = bone_distances(graph, skeleton, allowed=crossed)
-    np.testing.assert_array_equal(found.fallback, NOT_ALLOWED)
+    result = bone_distances(graph, skeleton, allowed=crossed)
+    np.testing.assert_array_equal(result.fallback, NOT_ALLOWED)

@@ -54,8 +54,8 @@ def distances_from(vertices, faces, start, end, resolution, connectivity="any"):
 def test_what_sees_a_bone_has_its_straight_distance():
     vertices, faces = meshes.ball(4)
     start, end = np.array([0.4, 0.45, 0.3]), np.array([0.6, 0.5, 0.65])
-    found = distances_from(vertices, faces, start, end, 32)
-    np.testing.assert_allclose(found, distance_to_segment(vertices, start, end), rtol=1e-9)
+    result = distances_from(vertices, faces, start, end, 32)
+    np.testing.assert_allclose(result, distance_to_segment(vertices, start, end), rtol=1e-9)
 
 
 def test_errors_around_a_corner_shrink_with_the_lattice():
@@ -64,9 +64,9 @@ def test_errors_around_a_corner_shrink_with_the_lattice():
     truth = along_the_l(vertices, start)
     errors = []
     for resolution in (16, 32, 64):
-        found = distances_from(vertices, faces, start, start, resolution)
+        result = distances_from(vertices, faces, start, start, resolution)
         far = truth > 2 / resolution
-        errors.append(np.abs(found[far] / truth[far] - 1).mean())
+        errors.append(np.abs(result[far] / truth[far] - 1).mean())
     assert errors[0] > errors[1] > errors[2]
     assert errors[2] < 0.01
     six = distances_from(vertices, faces, start, start, 64, connectivity=6)
@@ -78,18 +78,18 @@ def test_between_straight_and_along_the_edges(name):
     vertices, faces = meshes.ALL[name]()
     start, end = np.array([0.5, 0.5, 0.35]), np.array([0.55, 0.5, 0.6])
     edges = distances_from(vertices, faces, start, end, 24, connectivity=6)
-    found = distances_from(vertices, faces, start, end, 24)
-    np.testing.assert_array_equal(np.isfinite(found), np.isfinite(edges))
-    reached = np.isfinite(found)
+    result = distances_from(vertices, faces, start, end, 24)
+    np.testing.assert_array_equal(np.isfinite(result), np.isfinite(edges))
+    reached = np.isfinite(result)
     straight = distance_to_segment(vertices, start, end)
-    assert (found[reached] >= straight[reached] * (1 - 1e-12)).all()
+    assert (result[reached] >= straight[reached] * (1 - 1e-12)).all()
     # Paths start from more points of the bone, and need no more than the edges' length; but if
     # a bone is outside, they start behind the surface that faces it, a cell away at most.
     # In soups the bone is hardly ever inside; of the grid soup, 14 vertices are reached.
-    longer = found[reached] > edges[reached] * (1 + 1e-12)
+    longer = result[reached] > edges[reached] * (1 + 1e-12)
     share = 0.01 if name in ("box", "ball", "tube", "holes") else 0.4
     assert longer.mean() < share
-    assert (found[reached] <= edges[reached] + 1 / 24).all()
+    assert (result[reached] <= edges[reached] + 1 / 24).all()
 
 
 def test_walls_are_not_seen_through():
@@ -107,10 +107,10 @@ def test_walls_are_not_seen_through():
         path = path.subdivide()
     vertices, faces = np.array(path.vertices), np.array(path.faces, np.int32)
     start = np.array([0.95, 0.4, 0.15])
-    found = distances_from(vertices, faces, start, start, 48)
+    result = distances_from(vertices, faces, start, start, 48)
     across = (vertices[:, 1] > 0.6) & (vertices[:, 0] > 0.8)
     way_round = 0.75 + 0.6  # to the inner corner and back, at the very least
-    assert found[across].min() > way_round
+    assert result[across].min() > way_round
 
 
 @pytest.mark.parametrize("resolution", [32, 48, 64, 80, 96])
@@ -143,10 +143,10 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     known = np.isfinite(few.joint).sum(axis=0)
     assert nearest <= known.min()
     assert known.max() == 2 * nearest
-    found, expected = (np.sort(d, axis=0)[:nearest] for d in (few.joint, every))
+    result, expected = (np.sort(d, axis=0)[:nearest] for d in (few.joint, every))
     # Where a joint is just about to be too far, what lies beside the line of sight may not
     # know it any more: such paths bend a little.
-    error = np.abs(found / expected - 1)
+    error = np.abs(result / expected - 1)
     assert (error < 1e-9).mean() > 0.95
     assert error.mean() < 1e-3
     assert error.max() < 0.15
@@ -171,8 +171,8 @@ def test_with_three_joints_for_certain_the_fourth_is_hardly_ever_missed():
     every, few = (
         bone_distances(graph, rig.skeleton, leaf="fit", nearest_joints=n).joint for n in (None, 3)
     )
-    fourth, found = (np.sort(distance, axis=0)[3] for distance in (every, few))
-    assert (found <= fourth * 1.01).mean() > 0.98
+    fourth, result = (np.sort(distance, axis=0)[3] for distance in (every, few))
+    assert (result <= fourth * 1.01).mean() > 0.98
 
 
 def test_some_joints_are_measured_where_no_other_is_much_nearer():
@@ -190,12 +190,12 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
 
     some = np.isin(bones.joint, (2, 7))
     mine = sources.subset(some), bones.subset(some), nodes
-    found = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
+    result = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
     near = every[[2, 7]] <= 1.5 * np.maximum(least, 0.5 / 24)
     assert 0.1 < near.mean() < 0.5
-    assert (np.isfinite(found) == near).mean() > 0.99
-    both = near & np.isfinite(found)
-    assert (np.abs(found / every[[2, 7]] - 1)[both] < 1e-9).mean() > 0.95
+    assert (np.isfinite(result) == near).mean() > 0.99
+    both = near & np.isfinite(result)
+    assert (np.abs(result / every[[2, 7]] - 1)[both] < 1e-9).mean() > 0.95
 
 
 def test_distances_do_not_depend_on_how_vertices_are_numbered():
@@ -214,8 +214,8 @@ def test_distances_do_not_depend_on_how_vertices_are_numbered():
         few = any_angle_paths(graph, contraction, sources, bones, nodes, nearest=3, within=6)
         return least, few
 
-    for expected, found in zip(measured(by_graph), measured(by_place), strict=True):
-        np.testing.assert_array_equal(found, expected)
+    for expected, result in zip(measured(by_graph), measured(by_place), strict=True):
+        np.testing.assert_array_equal(result, expected)
 
 
 def test_what_is_many_times_farther_than_the_nearest_is_left_out():
@@ -283,9 +283,9 @@ def test_what_lies_beyond_the_last_bucket_is_reached_in_order():
         corners += [[x, y[k]], [x, y[k] + 2 * thin]] if k < turns - 1 else [[x, y[k]]]
     tube = ribbon(np.array(corners), 0.6 * thin)
     start = np.array([0.02, 0, 0])
-    found = distances_from(*tube, start, start, 96)
-    assert np.isfinite(found).all()
-    assert found.max() > 1.0 * (SPAN + 1)
+    result = distances_from(*tube, start, start, 96)
+    assert np.isfinite(result).all()
+    assert result.max() > 1.0 * (SPAN + 1)
 
 
 def ribbon(corners, half):

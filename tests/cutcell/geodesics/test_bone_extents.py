@@ -58,11 +58,12 @@ def test_a_fork_without_a_child_along_the_rest_axis_has_a_leaf_bone_besides():
     low, mid, neck, head = ([0.5, 0.5, z] for z in (0.05, 0.1, 0.2, 0.5))
     left, right, up = [0.3, 0.5, 0.55], [0.7, 0.5, 0.55], [0, 0, 1.0]
     joints, parents = [low, mid, neck, head, left, right], [-1, 0, 1, 2, 3, 3]
-    head_bones = ends(graph, oriented(joints, parents, [up] * 6), 3)
-    np.testing.assert_allclose(head_bones, [left, right, [0.5, 0.5, 0.725]], atol=1 / 32)
+    ways = [up] * 4 + [[1.0, 0, 0]] * 2
+    head_bones = ends(graph, oriented(joints, parents, ways), 3)
+    np.testing.assert_allclose(head_bones, [left, right, [0.5, 0.5, 0.95]], atol=1 / 32)
     # With a crown along the axis, or where no axis is known, there are the branches only.
     joints, parents = [*joints, [0.5, 0.5, 0.8]], [*parents, 3]
-    assert len(ends(graph, oriented(joints, parents, [up] * 7), 3)) == 3
+    assert len(ends(graph, oriented(joints, parents, [*ways, up]), 3)) == 3
     assert len(ends(graph, Skeleton(joints[:6], parents[:6]), 3)) == 2
 
 
@@ -74,6 +75,9 @@ def test_far_branches_and_those_past_another_child_are_no_bones():
     assert len(ends(graph, oriented(joints, parents, [x] * 5), 2)) == 1
     assert len(ends(graph, Skeleton(joints, parents), 2)) == 1
     joints[4] = [0.25, 0.19, 0.1]
+    assert len(ends(graph, oriented(joints, parents, [x] * 5), 2)) == 2
+    # Where no child lies on the axis itself, length does not matter.
+    joints[3], joints[4] = [0.2, 0.14, 0.1], [0.5, -0.02, 0.1]
     assert len(ends(graph, oriented(joints, parents, [x] * 5), 2)) == 2
 
 
@@ -88,6 +92,39 @@ def test_a_foot_hung_on_the_root_continues_the_shin():
     # Of two that are about as near neither is right: it ends where they are nearer.
     two = Skeleton([root, *on_axis(0.2, 0.5), [0.8, 0.05, 0.1], [0.8, 0.15, 0.1]], [-1, 0, 1, 0, 0])
     np.testing.assert_allclose(ends(graph, two, 2), on_axis(0.65), atol=1 / 32)
+
+
+def test_bones_of_a_garment_alone_run_from_joint_to_joint():
+    vertices, faces = meshes.ball(3)
+    away = vertices - [0.5, 0.5, 0.5]
+    plate = np.concatenate([vertices, vertices - 0.05 * away])
+    both = np.concatenate([faces, faces[:, ::-1] + len(vertices)])
+    graph = build_graph(TriangleMesh(plate, both), 32, connectivity="any")
+    joints = [[0.5, 0.5, z] for z in (0.3, 0.5, 0.7, 1.0)]
+    skeleton = Skeleton(joints, [-1, 0, 1, 2], deform=[True, True, True, False])
+    for joint in range(3):
+        np.testing.assert_allclose(ends(graph, skeleton, joint), [joints[joint + 1]])
+
+
+@pytest.mark.parametrize("parent", [0, 1])
+def test_a_twist_joint_at_the_end_of_a_bone_has_its_far_half(parent):
+    graph = limb()
+    names = ["thigh", "leg", "foot", "leg_twist"]
+    skeleton = Skeleton(on_axis(0.1, 0.4, 0.8, 0.8), [-1, 0, 1, parent], names)
+    np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(0.6))
+    np.testing.assert_allclose(ends(graph, skeleton, 3), on_axis(0.8))
+    bones, _ = fit_bones(graph, skeleton, NodeTree.of(graph))
+    np.testing.assert_allclose(
+        graph.lattice.to_file(bones.start[bones.joint == 3]), on_axis(0.6), atol=1e-9
+    )
+    # Of two joints there the nearer one is the end, whichever comes first.
+    for heel, foot in ((0.79, 0.8), (0.8, 0.79)):
+        places = on_axis(0.1, 0.4, heel, foot, 0.8)
+        two = Skeleton(places, [-1, 0, 1, 1, parent], ["thigh", "leg", "heel", "foot", "leg_twist"])
+        np.testing.assert_allclose(ends(graph, two, 4), on_axis(0.8))
+    # Another joint there, such as a prop in a hand, leaves the bone as it is.
+    other = replace(skeleton, names=[*names[:3], "prop"])
+    assert on_axis(0.8)[0] in ends(graph, other, 1).round(9).tolist()
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2, 3, 4], [3, 1, 4, 0, 2]])
@@ -138,7 +175,7 @@ def test_most_only_children_tell_the_rest_axis(axis):
     np.testing.assert_allclose(rest_directions(against, joints)[0], x, atol=1e-12)
 
 
-def test_no_rest_axis_without_a_majority():
+def test_no_rest_axis_without_a_majority_or_where_all_joints_are_alike():
     x, up = [1.0, 0, 0], [0, 1.0, 0]
     joints = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [3, 1, 0]]) / 4
     split = oriented(joints, [-1, 0, 1, 2, 3], [x, up, x, [0, 0, 1.0], up])
@@ -146,17 +183,31 @@ def test_no_rest_axis_without_a_majority():
     few = oriented(joints[:3], [-1, 0, 1], [x, x, x])
     assert rest_directions(few, joints[:3]) is None
     assert rest_directions(Skeleton(joints, [-1, 0, 1, 2, 3]), joints) is None
+    alike = oriented(joints, [-1, 0, 1, 2, 3], [x] * 5)
+    assert rest_directions(alike, joints) is None
 
 
 def test_a_last_bone_points_along_the_rest_axis():
     graph, x, up = limb(), [1.0, 0, 0], [0, 0, 1.0]
-    joints = on_axis(0.1, 0.3, 0.5, 0.7)
-    straight = oriented(joints, [-1, 0, 1, 2], [x, x, x, x])
-    np.testing.assert_allclose(ends(graph, straight, 3), on_axis(0.85), atol=1 / 32)
-    # Across, there is little room: it is two cells long at least, then it is aimed no more.
-    across = oriented(joints, [-1, 0, 1, 2], [x, x, x, up])
-    np.testing.assert_allclose(ends(graph, across, 3), [[0.7, 0.1, 0.1 + 2 / 32]], atol=1 / 64)
+    parents = [-1, 0, 1, 2, 3]
+    joints = on_axis(0.05, 0.1, 0.3, 0.5, 0.7)
+    straight = oriented(joints, parents, [up, x, x, x, x])
+    np.testing.assert_allclose(ends(graph, straight, 4), on_axis(1.0), atol=1 / 32)
+    # Across, there is little room.
+    across = oriented(joints, parents, [x, x, x, x, up])
+    np.testing.assert_allclose(ends(graph, across, 4), [[0.7, 0.1, 0.2]], atol=1 / 64)
     assert not fit_bones(graph, across, NodeTree.of(graph))[1].any()
+    # It is no more than three times as long as its parent's bone.
+    short = oriented(on_axis(0.05, 0.1, 0.2, 0.3, 0.35), parents, [up, x, x, x, x])
+    np.testing.assert_allclose(ends(graph, short, 4), on_axis(0.5), atol=1e-9)
+
+
+def test_an_end_marker_far_off_is_no_end():
+    graph = limb()
+    for place, end in ((0.6, 0.6), (0.9, 1.0)):
+        joints = on_axis(0.1, 0.3, 0.4, place)
+        skeleton = Skeleton(joints, [-1, 0, 1, 2], deform=[True, True, True, False])
+        np.testing.assert_allclose(ends(graph, skeleton, 2), on_axis(end), atol=1 / 32)
 
 
 def test_a_last_bone_ends_where_another_is_nearer():

@@ -33,8 +33,8 @@ def test_without_blocks_only_surface_nodes_are_merged(name):
     expected = representative[graph.edges]
     expected = expected[expected[:, 0] != expected[:, 1]]
     expected = np.unique(np.concatenate([expected, expected[:, ::-1]]), axis=0)
-    found = np.unique(np.stack(contracted_edges(graph), axis=1), axis=0)
-    np.testing.assert_array_equal(found, expected)
+    result = np.unique(np.stack(contracted_edges(graph), axis=1), axis=0)
+    np.testing.assert_array_equal(result, expected)
 
 
 @pytest.mark.parametrize("name", ["ball", "touching"])

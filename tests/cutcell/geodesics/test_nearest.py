@@ -43,6 +43,6 @@ def test_beside_are_those_in_neighbouring_cells(resolution):
     points = np.concatenate([random.random((400, 3)), nodes, *outside])
     cells, others = (np.floor(x * resolution) for x in (points, nodes[chosen]))
     expected = (np.abs(cells[:, None] - others).max(axis=2) <= 1).any(axis=1)
-    found = NodeTree(nodes, chosen, resolution).near(points)
+    result = NodeTree(nodes, chosen, resolution).near(points)
     assert 0 < expected.sum() < len(points)
-    np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(result, expected)

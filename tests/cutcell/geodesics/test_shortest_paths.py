@@ -50,8 +50,8 @@ def test_random_graphs(seed, degree, bones):
     lengths = np.where(rng.random(len(edges)) < 0.2, 0, rng.exponential(0.1, len(edges)))
     graph = any_graph(rng.random((count, 3)), edges, lengths)
     sources = some_sources(rng, count, bones)
-    found = shortest_paths(graph, sources, bones, np.arange(count, dtype=np.int32))
-    np.testing.assert_allclose(found, slow(graph, sources, bones), rtol=1e-12)
+    result = shortest_paths(graph, sources, bones, np.arange(count, dtype=np.int32))
+    np.testing.assert_allclose(result, slow(graph, sources, bones), rtol=1e-12)
 
 
 @pytest.mark.parametrize("connectivity", [6, 26])
@@ -64,11 +64,11 @@ def test_a_mesh_with_several_parts(connectivity):
     count, bones = len(graph.nodes), 11
     sources = some_sources(np.random.default_rng(5), count, bones, most=1)
     targets = graph.vertex_node[::-3].astype(np.int32)
-    found = shortest_paths(graph, sources, bones, targets)
+    result = shortest_paths(graph, sources, bones, targets)
     expected = dijkstra(graph.csr(), indices=sources.node) + sources.distance[:, None]
-    np.testing.assert_allclose(found, expected[:, targets], rtol=1e-12)
-    assert np.isinf(found).any(axis=1).all()  # the other ball
-    assert np.isfinite(found).any(axis=1).all()
+    np.testing.assert_allclose(result, expected[:, targets], rtol=1e-12)
+    assert np.isinf(result).any(axis=1).all()  # the other ball
+    assert np.isfinite(result).any(axis=1).all()
 
 
 def test_a_vertex_of_no_face_may_lie_anywhere():
@@ -77,9 +77,9 @@ def test_a_vertex_of_no_face_may_lie_anywhere():
         mesh = TriangleMesh(np.vstack([vertices, [[far, far, far]]]), faces)
         graph = build_graph(mesh, 4)
         sources = Sources(graph.vertex_node[:1], np.array([0]), np.zeros(1))
-        found = shortest_paths(graph, sources, 1, np.arange(len(graph.nodes), dtype=np.int32))
-        np.testing.assert_allclose(found, slow(graph, sources, 1), rtol=1e-12)
-        assert np.isfinite(found).sum() == len(graph.nodes) - 1
+        result = shortest_paths(graph, sources, 1, np.arange(len(graph.nodes), dtype=np.int32))
+        np.testing.assert_allclose(result, slow(graph, sources, 1), rtol=1e-12)
+        assert np.isfinite(result).sum() == len(graph.nodes) - 1
 
 
 def test_a_path_that_turns_back_and_forth():
@@ -93,16 +93,16 @@ def test_a_path_that_turns_back_and_forth():
     lengths = rng.random(count - 1)
     graph = any_graph(nodes[np.argsort(shuffled)], edges, lengths)
     sources = Sources(shuffled[:1].astype(np.int32), np.zeros(1, np.int32), np.array([0.25]))
-    found = shortest_paths(graph, sources, 1, shuffled.astype(np.int32))
-    np.testing.assert_allclose(found[0], 0.25 + np.append(0, np.cumsum(lengths)), rtol=1e-12)
+    result = shortest_paths(graph, sources, 1, shuffled.astype(np.int32))
+    np.testing.assert_allclose(result[0], 0.25 + np.append(0, np.cumsum(lengths)), rtol=1e-12)
 
 
 def test_a_long_way_round_beats_a_long_edge():
     graph = any_graph(np.eye(3), [[0, 1], [1, 2], [0, 2]], [0.1, 0.2, 0.4])
     matrix = csr_array(([0.1, 0.2, 0.4], ([0, 1, 0], [1, 2, 2])), shape=(3, 3))
     sources = Sources(np.zeros(1, np.int32), np.zeros(1, np.int32), np.zeros(1))
-    found = shortest_paths(graph, sources, 1, np.arange(3, dtype=np.int32))
-    np.testing.assert_allclose(found[0], dijkstra(matrix, directed=False, indices=0))
+    result = shortest_paths(graph, sources, 1, np.arange(3, dtype=np.int32))
+    np.testing.assert_allclose(result[0], dijkstra(matrix, directed=False, indices=0))
 
 
 def test_no_bones_have_no_distances():

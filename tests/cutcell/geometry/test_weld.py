@@ -61,6 +61,6 @@ def test_edges_and_their_balance(name):
             if start != end:
                 uses[min(start, end), max(start, end)] += 1
                 balance[min(start, end), max(start, end)] += 1 if start < end else -1
-    edges, found, _ = find_edges(faces)
+    edges, result, _ = find_edges(faces)
     assert list(map(tuple, edges.tolist())) == sorted(uses)
-    assert found.tolist() == [balance[tuple(edge)] for edge in edges.tolist()]
+    assert result.tolist() == [balance[tuple(edge)] for edge in edges.tolist()]

@@ -62,15 +62,15 @@ def on_edges(vertices, faces, resolution, axis):
 def test_crossings_equal_the_drawn_ones(caster, name, axis):
     vertices, faces = turned(*meshes.ALL[name]())
     expected = cast_rays(vertices, faces, 24, axis)
-    found = CASTERS[caster](vertices, faces, 24, axis)
+    result = CASTERS[caster](vertices, faces, 24, axis)
     assert len(expected.position) > 40
     tied = on_edges(vertices, faces, 24, axis)
     assert tied.mean() < 0.01
-    np.testing.assert_array_equal(np.diff(found.start)[~tied], np.diff(expected.start)[~tied])
-    clear_found = ~np.repeat(tied, np.diff(found.start))
+    np.testing.assert_array_equal(np.diff(result.start)[~tied], np.diff(expected.start)[~tied])
+    clear_found = ~np.repeat(tied, np.diff(result.start))
     clear = ~np.repeat(tied, np.diff(expected.start))
     np.testing.assert_allclose(
-        found.position[clear_found], expected.position[clear], atol=1e-5, rtol=0
+        result.position[clear_found], expected.position[clear], atol=1e-5, rtol=0
     )
     # Two crossings nearer than rounding may swap; their triangles and signs swap along.
     apart = np.ones(clear.sum(), bool)
@@ -78,11 +78,11 @@ def test_crossings_equal_the_drawn_ones(caster, name, axis):
     apart[close] = apart[close + 1] = False
     for name in ("triangle", "sign"):
         np.testing.assert_array_equal(
-            getattr(found, name)[clear_found][apart], getattr(expected, name)[clear][apart]
+            getattr(result, name)[clear_found][apart], getattr(expected, name)[clear][apart]
         )
-    assert found.start.dtype == expected.start.dtype
-    assert found.triangle.dtype == expected.triangle.dtype
-    assert found.sign.dtype == expected.sign.dtype
+    assert result.start.dtype == expected.start.dtype
+    assert result.triangle.dtype == expected.triangle.dtype
+    assert result.sign.dtype == expected.sign.dtype
 
 
 @pytest.mark.parametrize("caster", CASTERS)
@@ -91,11 +91,11 @@ def test_a_ray_through_a_shared_edge_crosses_once(caster):
     vertices, faces = meshes.box()
     vertices, index = weld(vertices)
     for axis in range(3):
-        found = CASTERS[caster](vertices, index[faces], 16, axis)
-        balance = np.concatenate([[0], np.cumsum(found.sign, dtype=int)])[found.start]
+        result = CASTERS[caster](vertices, index[faces], 16, axis)
+        balance = np.concatenate([[0], np.cumsum(result.sign, dtype=int)])[result.start]
         assert (balance == 0).all()
         expected = cast_rays(vertices, index[faces], 16, axis)
-        np.testing.assert_array_equal(np.diff(found.start), np.diff(expected.start))
+        np.testing.assert_array_equal(np.diff(result.start), np.diff(expected.start))
 
 
 @pytest.mark.parametrize("caster", CASTERS)
@@ -103,8 +103,8 @@ def test_doubled_triangles_are_all_found(caster):
     vertices, faces = turned(*meshes.ball(1))
     doubled = np.concatenate([faces, faces[:, ::-1]])
     expected = cast_rays(vertices, doubled, 16, 2)
-    found = CASTERS[caster](vertices, doubled, 16, 2)
-    np.testing.assert_array_equal(np.diff(found.start), np.diff(expected.start))
+    result = CASTERS[caster](vertices, doubled, 16, 2)
+    np.testing.assert_array_equal(np.diff(result.start), np.diff(expected.start))
 
 
 def prepared(vertices, faces, resolution):

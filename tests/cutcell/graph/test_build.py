@@ -218,9 +218,9 @@ def test_rays_that_meet_too_many_triangles_are_refused_before_they_are_cast(monk
 def test_what_is_reckoned_for_a_graph_is_what_binding_takes(connectivity):
     """In a process of its own: never less than the peak that is measured, nor far more."""
     case = {"rig": str(RABBIT), "resolution": 160, "connectivity": connectivity}
-    found = run(case, SimpleNamespace(limit=300))
-    taken = (found["peak"] - found["before"]) * 2**20
-    assert taken <= needed_memory(*found["kinds"], connectivity) <= 2.5 * taken
+    result = run(case, SimpleNamespace(limit=300))
+    taken = (result["peak"] - result["before"]) * 2**20
+    assert taken <= needed_memory(*result["kinds"], connectivity) <= 2.5 * taken
 
 
 def test_meshes_of_absurd_sizes_are_refused():

@@ -13,7 +13,7 @@ from cutcell.graph.rays import cast_all_rays
 from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.boundary import find_boundary
-from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.graph.winding.exact import WindingNumbers, boundary_angles
 from cutcell.graph.winding.treecode.caps import smallest_caps
 from cutcell.graph.winding.treecode.cells import MAX_NEAR, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
@@ -118,6 +118,23 @@ def test_intervals_of_rigs_equal_the_plain_ones(path):
     surface = prepare_surface(cutcell.load(path).mesh, 32)
     hits = cast_all_rays(surface.vertices, surface.faces, surface.resolution)
     check_against_plain(surface, hits, 0.5 - 1e-9)
+
+
+def test_the_midpoints_between_repeated_faces_are_evaluated_once(monkeypatch):
+    vertices, faces = confetti()
+    surface, hits = prepared(vertices, np.append(faces, faces[:1].repeat(300, axis=0), axis=0), 33)
+    evaluated = []
+
+    def angles(vertices, boundary, points):
+        evaluated.append(points)
+        return boundary_angles(vertices, boundary, points)
+
+    numbers = "cutcell.graph.winding.treecode.winding_numbers"
+    monkeypatch.setattr(f"{numbers}.boundary_angles", angles)
+    check_against_plain(surface, hits, 0.5 - 1e-9)
+    assert any(len(points) for points in evaluated)
+    for points in evaluated:
+        assert len(np.unique(points, axis=0)) == len(points)
 
 
 def test_loose_triangles_take_memory_in_proportion_to_their_queries():

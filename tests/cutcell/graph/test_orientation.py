@@ -58,8 +58,8 @@ def test_a_part_of_a_surface_is_found_however_large():
     vertices, faces = meshes.ball(3)
     for share in (0.05, 0.4, 0.6, 0.95):
         wrong = vertices[faces][:, :, 2].mean(axis=1) < share
-        found = inverted(vertices, np.where(wrong[:, None], faces[:, ::-1], faces))
-        np.testing.assert_array_equal(found, wrong)
+        result = inverted(vertices, np.where(wrong[:, None], faces[:, ::-1], faces))
+        np.testing.assert_array_equal(result, wrong)
 
 
 def test_each_component_is_judged_by_itself():
@@ -108,8 +108,8 @@ def test_a_soup_of_single_triangles_is_judged_by_what_sees_the_outside():
     assert not inverted(apart, soup).any()
     assert inverted(apart, soup[:, ::-1]).all()
     wrong = np.random.default_rng(0).random(len(soup)) < 0.3
-    found = inverted(apart, np.where(wrong[:, None], soup[:, ::-1], soup))
-    np.testing.assert_array_equal(found, wrong)
+    result = inverted(apart, np.where(wrong[:, None], soup[:, ::-1], soup))
+    np.testing.assert_array_equal(result, wrong)
 
 
 def test_faces_that_are_there_twice_are_left_alone():
@@ -125,10 +125,10 @@ def test_faces_that_are_there_twice_are_left_alone():
 def test_many_copies_of_faces_take_no_more_time():
     points, faces = moved(sheet(2), 0.5, (0.2, 0.2, 0.2))
     faces = np.concatenate([faces, np.tile(faces[:3], (3000, 1))])
-    begin, told = time.process_time(), []
-    exposure(points, faces, np.arange(len(faces)), np.ones(len(faces), bool), told.append)
+    begin, reports = time.process_time(), []
+    exposure(points, faces, np.arange(len(faces)), np.ones(len(faces), bool), reports.append)
     assert time.process_time() - begin < 5  # it was a minute
-    assert told[-1] == 1
+    assert reports[-1] == 1
 
 
 def test_faces_that_have_collapsed_part_nothing():
@@ -153,14 +153,14 @@ def test_neither_motion_nor_order_matters(seed):
     body = meshes.ball_with_holes(seed)
     parts = [turned(body), moved(body, 0.5, by=(0.8, 0, 0)), moved(sheet(), 0.5, by=(0, 1, 0))]
     vertices, faces, _ = joined(*parts)
-    found = inverted(vertices, faces)
-    assert 0 < found.sum() < len(found)
+    result = inverted(vertices, faces)
+    assert 0 < result.sum() < len(result)
     turn = Rotation.random(rng=rng).as_matrix()
     order, number = rng.permutation(len(faces)), rng.permutation(len(vertices))
     shuffled = np.empty_like(vertices)
     shuffled[number] = 7 * vertices @ turn.T + rng.normal(size=3)
     again = inverted(shuffled, np.roll(number[faces], 1, axis=1)[order])
-    np.testing.assert_array_equal(again, found[order])
+    np.testing.assert_array_equal(again, result[order])
 
 
 def test_the_graph_of_an_inverted_mesh_is_that_of_the_mesh():

@@ -27,13 +27,13 @@ def as_list(crossings, resolution):
 def check_against_fractions(vertices, faces, resolution, axis):
     vertices, index = weld(vertices, 0.0)
     faces = index[faces]
-    found = as_list(cast_rays(vertices, faces, resolution, axis), resolution)
+    result = as_list(cast_rays(vertices, faces, resolution, axis), resolution)
     expected = naive.rays(vertices, faces, resolution, axis)
-    assert sorted((i, j, s, t) for i, j, _, s, t in found) == sorted(
+    assert sorted((i, j, s, t) for i, j, _, s, t in result) == sorted(
         (i, j, s, t) for i, j, _, s, t in expected
     )
     where = {(i, j, t): p for i, j, p, _, t in expected}
-    for i, j, position, _, t in found:
+    for i, j, position, _, t in result:
         assert position == pytest.approx(where[i, j, t], abs=1e-12)
 
 

@@ -33,8 +33,8 @@ def test_equals_solid_angles(name):
     vertices, faces = meshes.ALL[name]()
     points = np.random.default_rng(1).uniform(-0.2, 1.2, (400, 3))
     expected = naive.winding_number(vertices, faces, points)
-    found = winding_number(TriangleMesh(vertices, faces), points)
-    np.testing.assert_allclose(found, expected, atol=1e-12)
+    result = winding_number(TriangleMesh(vertices, faces), points)
+    np.testing.assert_allclose(result, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", meshes.ALL)
@@ -42,8 +42,8 @@ def test_equals_libigl(name):
     vertices, faces = meshes.ALL[name]()
     points = off_surface(vertices, faces, np.random.default_rng(2).uniform(0, 1, (200, 3)))
     expected = igl.winding_number(vertices, faces.astype(np.int64), points)
-    found = winding_number(TriangleMesh(vertices, faces), points)
-    np.testing.assert_allclose(found, expected, atol=1e-9)
+    result = winding_number(TriangleMesh(vertices, faces), points)
+    np.testing.assert_allclose(result, expected, atol=1e-9)
 
 
 @settings(max_examples=40)
@@ -56,8 +56,8 @@ def test_points_in_line_with_edges_and_vertices(seed):
         return
     points = off_surface(vertices, faces, grid)
     expected = naive.winding_number(vertices, faces, points)
-    found = winding_number(TriangleMesh(vertices, faces), points)
-    np.testing.assert_allclose(found, expected, atol=1e-9)
+    result = winding_number(TriangleMesh(vertices, faces), points)
+    np.testing.assert_allclose(result, expected, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["box", "ball", "torus"])
@@ -86,8 +86,8 @@ def test_split_vertices_are_welded():
     vertices, faces = meshes.ball()
     split = TriangleMesh(vertices[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3))
     points = np.random.default_rng(4).uniform(0, 1, (50, 3))
-    found = winding_number(split, points)
-    np.testing.assert_array_equal(found, np.round(found))
+    result = winding_number(split, points)
+    np.testing.assert_array_equal(result, np.round(result))
 
 
 def test_boundary_of_a_closed_mesh_is_empty_and_of_a_hole_its_rim():
@@ -107,8 +107,8 @@ def test_the_rim_of_copies_is_repeated():
     points = np.random.default_rng(5).uniform(-0.2, 1.2, (50, 3))
     copies = np.concatenate([np.tile(opened, (5, 1)), once])
     expected = naive.winding_number(vertices, copies, points)
-    found = winding_number(TriangleMesh(vertices, copies), points)
-    np.testing.assert_allclose(found, expected, atol=1e-12)
+    result = winding_number(TriangleMesh(vertices, copies), points)
+    np.testing.assert_allclose(result, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("points", [np.zeros(3), np.zeros((2, 2)), [[0, 0, np.nan]]])

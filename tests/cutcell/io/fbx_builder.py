@@ -101,28 +101,28 @@ def with_materials(scene, uv, polygons=None, materials=(), colors=None):
     colors : array, shape (f, 3, 4), optional
     """
     layers = [("UV", uv, "UV", "UVIndex"), ("Color", colors, "Colors", "ColorIndex")]
-    found, named = [], []
+    result, named = [], []
     for kind, values, name, index in layers:
         if values is None:
             continue
         flat = np.asarray(values, float).reshape(-1, np.shape(values)[-1])
         direct, which = np.unique(flat, axis=0, return_inverse=True)
-        found.append(layer(kind, "ByPolygonVertex", [
+        result.append(layer(kind, "ByPolygonVertex", [
             record(name, direct.ravel()), record(index, which.ravel().astype(np.int32))
         ]))  # fmt: skip
         named.append(kind)
     which = np.zeros(1) if polygons is None else np.asarray(polygons)
     how = "AllSame" if polygons is None else "ByPolygon"
-    found.append(layer("Material", how, [record("Materials", which.astype(np.int32))]))
+    result.append(layer("Material", how, [record("Materials", which.astype(np.int32))]))
     named.append("Material")
     elements = [
         record("LayerElement", children=[record("Type", f"LayerElement{kind}"),
                                          record("TypedIndex", 0)]) for kind in named
     ]  # fmt: skip
-    found.append(record("Layer", 0, children=[record("Version", 100), *elements]))
+    result.append(record("Layer", 0, children=[record("Version", 100), *elements]))
     head, objects, connections = scene
     geometry, *others = objects[2]
-    geometry = record(*geometry[:1], *geometry[1], children=[*geometry[2], *found])
+    geometry = record(*geometry[:1], *geometry[1], children=[*geometry[2], *result])
     links = []
     for k, (look, texture) in enumerate(materials):
         others.append(record("Material", 900 + k, f"Material::paint {k}", "", children=[
@@ -163,9 +163,9 @@ def settings(up, unit):
     signs = {0: (1, 1), 1: (1, 1), 2: (-1, 1)}[up]
     axes = [("UpAxis", up), ("UpAxisSign", 1), ("FrontAxis", front), ("FrontAxisSign", signs[0])]
     axes += [("CoordAxis", side), ("CoordAxisSign", signs[1])]
-    found = [record("P", name, "int", "Integer", "", value) for name, value in axes]
-    found.append(record("P", "UnitScaleFactor", "double", "Number", "", float(unit)))
-    return record("GlobalSettings", children=[record("Version", 1000), properties(*found)])
+    result = [record("P", name, "int", "Integer", "", value) for name, value in axes]
+    result.append(record("P", "UnitScaleFactor", "double", "Number", "", float(unit)))
+    return record("GlobalSettings", children=[record("Version", 1000), properties(*result)])
 
 
 def turning():
@@ -320,8 +320,8 @@ def old_text():
             f"Indexes: {_list(held)}\nWeights: {_list(SHARES[held, k])}\n"
             f"Transform: {_list(moved(*-REST[k]).T)}\nTransformLink: {_list(moved(*REST[k]).T)}\n}}"
         )
-    found = {"vertices": _list(COLUMN), "corners": _list(corners), "clusters": "\n".join(clusters)}
-    return (OLD % found).encode()
+    result = {"vertices": _list(COLUMN), "corners": _list(corners), "clusters": "\n".join(clusters)}
+    return (OLD % result).encode()
 
 
 def _list(values):

@@ -71,8 +71,8 @@ def saved(folder, rig):
     (report,) = reports(folder / "out.glb")
     assert not errors(report)
     meshes = {}
-    for name, found in primitives(folder / "out.glb"):
-        meshes.setdefault(name, []).append(found)
+    for name, result in primitives(folder / "out.glb"):
+        meshes.setdefault(name, []).append(result)
     return {
         name: {key: np.concatenate([one[key] for one in parts]) for key in parts[0]}
         for name, parts in meshes.items()

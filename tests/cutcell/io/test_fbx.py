@@ -256,12 +256,12 @@ class TestDamage:
             data = bytearray(WAYS[way])
             for at in random.integers(0, len(data), 6):
                 data[at] ^= 1 << random.integers(8)
-            told = "column.fbx: "
+            reported = "column.fbx: "
             try:
                 load(bytes(data))
             except cutcell.CutcellError as error:
-                told = str(error)
-            assert told.startswith("column.fbx: ")
+                reported = str(error)
+            assert reported.startswith("column.fbx: ")
 
 
 def changed(scene, keep=lambda one: True, objects=(), links=()):

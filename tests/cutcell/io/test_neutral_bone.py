@@ -48,9 +48,9 @@ def test_they_are_bound_anew(loaded):
 
 
 def test_a_diagnosis_lists_them_and_a_repair_gives_them_weights(loaded):
-    found = cutcell.diagnose(loaded(with_neutral([1, 2, 3, 7])), 16)
-    assert_array_equal(found["unweighted-vertices"].vertices, [1, 2, 3, 7])
-    repaired = found.repaired(["unweighted-vertices"]).rig
+    result = cutcell.diagnose(loaded(with_neutral([1, 2, 3, 7])), 16)
+    assert_array_equal(result["unweighted-vertices"].vertices, [1, 2, 3, 7])
+    repaired = result.repaired(["unweighted-vertices"]).rig
     assert_allclose(repaired.weights.sum(axis=1), 1)
     assert not repaired.weights[:, 2].any()
 

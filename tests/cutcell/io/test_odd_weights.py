@@ -18,8 +18,8 @@ def odd_glb(path, value):
     shares, joints = SHARES.copy(), JOINTS.copy()
     shares[[3, 5], 2], joints[3, 2] = value, 9
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    found |= {"JOINTS_0": builder.accessor(joints), "WEIGHTS_0": builder.accessor(shares)}
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result |= {"JOINTS_0": builder.accessor(joints), "WEIGHTS_0": builder.accessor(shares)}
     return builder.save(path)
 
 

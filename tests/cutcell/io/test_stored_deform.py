@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import cutcell
-from cutcell.editing import corrected_rig
+from cutcell.editing import edited_rig
 from cutcell.io.gltf.container import read_document
 from tests.cutcell.io.fbx_builder import binary, column_scene
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, column, two_skins
@@ -45,8 +45,8 @@ def of_fbx(path):
 
 
 def with_a_joint_added(path):
-    added = cutcell.JointCorrection(added=True, position=(0.5, 2, 0.5), parent="tip")
-    return corrected_rig(of_column(path), cutcell.Corrections({"end": added}))
+    added = cutcell.JointEdit(added=True, position=(0.5, 2, 0.5), parent="tip")
+    return edited_rig(of_column(path), cutcell.Edits({"end": added}))
 
 
 @pytest.mark.parametrize(

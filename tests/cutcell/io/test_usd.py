@@ -65,7 +65,7 @@ def moved(x, y, z):
 
 def text(**changes):
     """Return the column as USD text."""
-    found = {
+    result = {
         "unit": 0.01,
         "up": "Y",
         "more": "",
@@ -80,7 +80,7 @@ def text(**changes):
         "shares": ", ".join(map(str, SHARES[:, :2].ravel().tolist())),
         "visibility": "inherited",
     }
-    return TEXT % (found | changes)
+    return TEXT % (result | changes)
 
 
 @pytest.fixture

@@ -28,23 +28,23 @@ class Spin:
     times = np.linspace(0, 2.0, 5)
 
     def sample(self, seconds):
-        found = np.tile(np.eye(4), (len(seconds), 3, 1, 1))
-        found[:, :, 0, 3] = seconds[:, None]
-        return found
+        result = np.tile(np.eye(4), (len(seconds), 3, 1, 1))
+        result[:, :, 0, 3] = seconds[:, None]
+        return result
 
 
 @pytest.mark.parametrize(
     ("seconds", "x"), [(-1, 0), (0, 0), (0.5, 5), (1, 10), (1.5, 25), (2, 40), (7, 40)]
 )
 def test_before_and_after_its_time_a_clip_stands_still(seconds, x):
-    found = RAMP.sample(seconds)
-    assert found.shape == (1, 4, 4)
-    assert found[0, 0, 3] == pytest.approx(x)
+    result = RAMP.sample(seconds)
+    assert result.shape == (1, 4, 4)
+    assert result[0, 0, 3] == pytest.approx(x)
 
 
 def test_many_times_are_sampled_at_once():
-    found = RAMP.sample([0.5, 1.5])
-    assert_array_equal(found, [RAMP.sample(0.5), RAMP.sample(1.5)])
+    result = RAMP.sample([0.5, 1.5])
+    assert_array_equal(result, [RAMP.sample(0.5), RAMP.sample(1.5)])
     assert RAMP.sample([]).shape == (0, 1, 4, 4)
 
 

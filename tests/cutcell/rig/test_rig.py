@@ -153,6 +153,15 @@ class TestRig:
         assert after.name == "tom"
         assert not after.weights.flags.writeable
 
+    def test_weights_are_scaled_to_sum_to_one(self):
+        given = np.array([[1.5, 0.5], [0, 0], [1e-300, 0], [1e308, 1e308]])
+        made = Rig(mesh(), chain(), given)
+        np.testing.assert_allclose(made.weights, [[0.75, 0.25], [0, 0], [1, 0], [0.5, 0.5]])
+        np.testing.assert_array_equal(made.weight_sums[:3], [2, 0, 1e-300])
+        again = Rig(mesh(), chain(), made.weights)
+        assert again.weight_sums is None
+        np.testing.assert_array_equal(again.weights, made.weights)
+
     @pytest.mark.parametrize(
         ("weights", "sentence"),
         [

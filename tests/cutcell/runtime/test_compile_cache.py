@@ -33,8 +33,8 @@ def folder(tmp_path, monkeypatch):
 def outcome(number=1):
     """Call the kernel as a new process would: say what it returns, and if it was compiled."""
     kernel = compiled(one_more)
-    found = kernel(number)
-    return found, "loaded" if kernel.stats.cache_hits else "compiled"
+    result = kernel(number)
+    return result, "loaded" if kernel.stats.cache_hits else "compiled"
 
 
 def test_a_kernel_is_compiled_once_for_each_type(folder):
@@ -186,8 +186,10 @@ def test_a_process_waits_for_what_another_one_compiles(patience, folder, monkeyp
 
 
 @pytest.mark.parametrize(
-    "what", ["numba.__version__", "sys.implementation.cache_tag", "sys.platform"]
-)
+    "what",
+    ["numba.__version__", "sys.implementation.cache_tag", "sys.platform", "config.CPU_NAME",
+     "config.CPU_FEATURES"],
+)  # fmt: skip
 def test_each_compiler_has_a_set_of_its_own(what, monkeypatch):
     name = compile_cache._set_name.__wrapped__()
     assert name == compile_cache._set_name.__wrapped__()

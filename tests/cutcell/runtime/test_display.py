@@ -20,7 +20,7 @@ from cutcell.runtime.display import (
     shown_name,
 )
 from cutcell_app.files.table_export import save_numbers, spreadsheet_cell
-from cutcell_app.jobs.messages import without_folders
+from cutcell_app.server.messages import without_folders
 from cutcell_lab.baselines.compare.markdown import comparison_markdown
 from cutcell_lab.baselines.compare.scores import Comparison, MethodScore, RigScore
 from cutcell_lab.baselines.compare.terminal import comparison_table
@@ -130,9 +130,9 @@ class TestConsole:
 
     def test_json(self, capsys):
         print_json({"name": self.text})
-        told = capsys.readouterr().out
-        assert not hidden(told.replace("\n", ""))
-        assert json.loads(told) == {"name": self.text}
+        reports = capsys.readouterr().out
+        assert not hidden(reports.replace("\n", ""))
+        assert json.loads(reports) == {"name": self.text}
 
     def test_lines(self, capsys):
         print_line(self.text)
@@ -143,9 +143,9 @@ class TestConsole:
         monkeypatch.setenv("COLUMNS", "1000")
         with progress_bars() as report:
             report("\x1b]0;owned\x07[red]x[/red]", 0.5)
-        told = capsys.readouterr().err
-        assert "\x1b]0" not in told
-        assert "[red]x" in told
+        reports = capsys.readouterr().err
+        assert "\x1b]0" not in reports
+        assert "[red]x" in reports
 
 
 class TestFolders:
@@ -166,8 +166,8 @@ class TestFolders:
 
     def test_folders_with_spaces_are_known_by_name(self):
         folder = Path("/home/Jane Doe/my rigs")
-        told = without_folders(f"{folder}/sub/a.glb: is empty", [Path("/"), folder])
-        assert told == "a.glb: is empty"
+        reports = without_folders(f"{folder}/sub/a.glb: is empty", [Path("/"), folder])
+        assert reports == "a.glb: is empty"
 
 
 def test_a_comparison_of_nasty_names(capsys, monkeypatch):
@@ -181,8 +181,8 @@ def test_a_comparison_of_nasty_names(capsys, monkeypatch):
     for rigs in ((rig,), (rig, rig)):
         comparison = Comparison(rigs, ("euclidean", "bone_heat"))
         console = Console(width=1000, highlight=False)
-        with console.capture() as told:
+        with console.capture() as reports:
             console.print(comparison_table(comparison, 1000))
-        assert not hidden(told.get().replace("\n", ""))
-        assert "[red]x" in told.get()
+        assert not hidden(reports.get().replace("\n", ""))
+        assert "[red]x" in reports.get()
         assert not hidden(comparison_markdown(comparison).replace("\n", ""))

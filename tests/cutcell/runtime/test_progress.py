@@ -10,11 +10,11 @@ from cutcell.runtime.progress import Shares, share_of
 
 
 def test_shares_are_told_as_a_whole():
-    told = []
-    shares = Shares(lambda stage, done: told.append((stage, done)), "distances", 2)
+    reports = []
+    shares = Shares(lambda stage, done: reports.append((stage, done)), "distances", 2)
     for share, done in ((0, 0.5), (1, 0.25), (0, 1.0), (1, 1.0)):
         shares.tell(share, done)
-    assert told == [("distances", x) for x in (0.25, 0.375, 0.625, 1.0)]
+    assert reports == [("distances", x) for x in (0.25, 0.375, 0.625, 1.0)]
 
 
 def test_nobody_is_called_by_two_threads_at_once():
@@ -50,8 +50,8 @@ def test_who_cancels_stops_every_share():
 
 
 def test_parts_of_the_work_are_told_as_fractions_of_the_whole():
-    told = []
-    tell = share_of(share_of(told.append, 0.5, 1), 0, 0.5)
+    reports = []
+    tell = share_of(share_of(reports.append, 0.5, 1), 0, 0.5)
     for done in (0, 0.5, 1):
         tell(done)
-    assert told == [0.5, 0.625, 0.75]
+    assert reports == [0.5, 0.625, 0.75]

@@ -30,17 +30,17 @@ def test_work_may_call_for_threads_itself():
 
 
 def test_threads_may_be_called_for_at_once():
-    found = {}
+    result = {}
 
     def call(n):
-        found[n] = in_threads(lambda k: n + k, range(50))
+        result[n] = in_threads(lambda k: n + k, range(50))
 
     callers = [threading.Thread(target=call, args=(n,)) for n in range(8)]
     for caller in callers:
         caller.start()
     for caller in callers:
         caller.join()
-    assert found == {n: [n + k for k in range(50)] for n in range(8)}
+    assert result == {n: [n + k for k in range(50)] for n in range(8)}
 
 
 def test_errors_reach_the_caller():
@@ -95,9 +95,9 @@ def test_a_forked_process_starts_threads_of_its_own():
 
 
 def test_progress_is_told_after_each_item():
-    told = []
-    in_threads(lambda k: k, range(20), told.append)
-    assert told == [k / 20 for k in range(1, 21)]
+    reports = []
+    in_threads(lambda k: k, range(20), reports.append)
+    assert reports == [k / 20 for k in range(1, 21)]
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

@@ -89,11 +89,11 @@ def test_all_is_compiled_once_it_was_warmed_up(another_machine, monkeypatch):
 
 @pytest.mark.slow
 def test_a_compile_is_announced_once(another_machine):
-    told = []
+    reports = []
     for _ in range(2):
-        cutcell.bind(bar(4), 8, progress=lambda stage, done: told.append(stage))
-        told.append("|")
-    stages = "".join(f"{a} " for a, b in pairwise([*told, ""]) if a != b)
+        cutcell.bind(bar(4), 8, progress=lambda stage, done: reports.append(stage))
+        reports.append("|")
+    stages = "".join(f"{a} " for a, b in pairwise([*reports, ""]) if a != b)
     assert stages == "compile graph distances weights | graph distances weights | "
 
 
@@ -112,9 +112,9 @@ def test_where_nothing_can_be_kept_one_sentence_says_so(another_machine, monkeyp
 def kinds(thing):
     """List the types of an object's arrays, for which functions are compiled."""
     arrays = {field.name: getattr(thing, field.name) for field in fields(thing)}
-    found = {k: (v.dtype, v.ndim) for k, v in arrays.items() if isinstance(v, np.ndarray)}
-    assert all(arrays[name].flags.c_contiguous for name in found)
-    return found
+    result = {k: (v.dtype, v.ndim) for k, v in arrays.items() if isinstance(v, np.ndarray)}
+    assert all(arrays[name].flags.c_contiguous for name in result)
+    return result
 
 
 def test_the_graph_made_by_hand_is_of_the_types_that_are_built():

@@ -59,13 +59,13 @@ def test_points_on_edges_are_counted_once():
 def test_a_bone_in_another_component_counts_as_farther():
     containment = np.array([[1.0, 0.2, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.0]])
     penalty = cross_component_penalty(containment, np.zeros_like(containment, bool))
-    np.testing.assert_allclose(penalty[0], [1, 2.5, 1])
-    np.testing.assert_allclose(penalty[1], [3, 1, 1])
+    np.testing.assert_allclose(penalty[0], [1, 1.75, 1])
+    np.testing.assert_allclose(penalty[1], [2, 1, 1])
     np.testing.assert_allclose(penalty[2], 1)  # it contains no bone
-    # No penalty either where a bone is most of what a component contains, as one within another.
+    # Other bones in a component do not matter.
     half = np.array([[1.0, 0.5], [0.0, 0.25]])
     np.testing.assert_allclose(
-        cross_component_penalty(half, np.zeros_like(half, bool)), [[1, 1], [3, 1]]
+        cross_component_penalty(half, np.zeros_like(half, bool)), [[1, 1], [2, 1.5]]
     )
     np.testing.assert_allclose(cross_component_penalty(containment[:1], np.zeros((1, 3), bool)), 1)
 
@@ -86,6 +86,27 @@ def test_a_button_follows_what_it_sits_on():
     weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
     np.testing.assert_allclose(weights[-8:], weights[[-1] * 8], atol=1e-12)
     assert 0.3 < weights[-1, 0] < 0.7
+
+
+def sheet():
+    """Make an open sheet over the bar of `grid_box`."""
+    vertices, faces = grid_box(16, 8, 1, size=(0.8, 0.4, 0.26))
+    return vertices + np.array([0.1, -0.1, 0]), faces[(vertices[faces][:, :, 2] > 0).all(axis=1)]
+
+
+def test_a_cape_follows_the_body_under_it():
+    body, hand = grid_box(20), grid_box(8, size=(0.3, 0.02, 0.02))
+    hand = hand[0] + [0.6, 0.09, 0.33], hand[1]
+    vertices, faces = joined(body, hand, sheet())
+    joints = [[0.1, 0.1, 0.1], [0.5, 0.1, 0.1], [0.9, 0.1, 0.1], [0.61, 0.1, 0.34]]
+    skeleton = Skeleton(joints, [-1, 0, 1, 1], deform=[True, True, False, True])
+    weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
+    on_sheet = np.isclose(vertices[:, 2], 0.26)
+    # The bone of the hand is nearer to it, the surface of the body is, too.
+    assert weights[on_sheet, 2:].max() < 0.1
+    x = vertices[on_sheet, 0]
+    assert weights[on_sheet, 0][x < 0.3].min() > 0.6
+    assert weights[on_sheet, 1][x > 0.7].min() > 0.6
 
 
 def test_a_body_in_patches_has_no_accessories():

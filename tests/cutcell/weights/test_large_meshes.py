@@ -1,5 +1,8 @@
 """Weights of large meshes come near to the exact solution, on surfaces and on what is none."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -10,6 +13,7 @@ from cutcell.weights.rig_falloff import diffusion
 from cutcell.weights.rig_falloff.diffusion import MANY, Diffusion
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests.bars import grid_box
+from tests.conftest import ROOT
 
 DEPTH = 0.05
 """Of all vertices of these meshes in the unit cube: how far from the bones they are."""
@@ -103,3 +107,11 @@ def test_progress_can_stop_it():
     diffused = Diffusion.over(surface, np.full(len(points), DEPTH), 64)
     with pytest.raises(cutcell.Cancelled):
         diffused.spread(np.eye(9)[(points[:, 0] * 9).astype(int)], stop)
+
+
+@pytest.mark.slow
+def test_factors_that_another_thread_made_leave_no_memory_behind():
+    # In a process of its own: what other tests leave to the allocator is not measured.
+    command = [sys.executable, "-m", "tests.cutcell.weights.factors_by_threads"]
+    grown = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert int(grown) < 30_000  # kB; it was six times as much

@@ -52,8 +52,8 @@ def test_surface_is_given_to_the_bone_that_it_looks_away_from():
     point, start, end = np.zeros(3), np.array([[0, 1.0, -1]]), np.array([[0, 1.0, 1]])
     half = (1 + FACING_LEAST) / 2
     for normal, expected in (([0, -1, 0], 1), ([0, 1, 0], FACING_LEAST), ([1, 0, 0], half)):
-        found = _facing(point, np.array(normal, float), start, end, 0, 1)
-        assert found == pytest.approx(expected)
+        result = _facing(point, np.array(normal, float), start, end, 0, 1)
+        assert result == pytest.approx(expected)
     # Of a joint's bones the nearest counts; a vertex on the bone itself looks at nothing.
     both = np.array([[0, 1.0, 0], [0, -2.0, 0]])
     assert _facing(point, np.array([0, 1.0, 0]), both, both, 0, 2) == pytest.approx(FACING_LEAST)
@@ -69,8 +69,8 @@ def test_diffusion_is_the_solution_of_its_equation():
     screening = SHARPNESS * vertex_areas(points, faces) / depth**2
     system = cotangent_laplacian(points, faces).toarray() + np.diag(screening)
     expected = np.linalg.solve(system, screening[:, None] * weights)
-    found = Diffusion.over(SurfaceOperators.over(points, faces), depth, 64).spread(weights)
-    np.testing.assert_allclose(found, expected, atol=1e-12)
+    result = Diffusion.over(SurfaceOperators.over(points, faces), depth, 64).spread(weights)
+    np.testing.assert_allclose(result, expected, atol=1e-12)
 
 
 def test_a_tiny_face_far_from_all_bones_does_not_make_the_equation_singular():

@@ -19,9 +19,9 @@ def distances():
 
 @pytest.mark.parametrize("alpha", [0, 0.3, 0.5, 1])
 def test_paper_falloff_is_equation_1(distances, alpha):
-    found = skinning_weights(distances, alpha=alpha, max_influences=None)
+    result = skinning_weights(distances, alpha=alpha, max_influences=None)
     expected = naive.paper_weights(distances.joint, distances.graph.lattice.diagonal, alpha)
-    np.testing.assert_allclose(found, expected, atol=1e-12)
+    np.testing.assert_allclose(result, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("alpha", [0, 0.5, 1])
@@ -47,21 +47,21 @@ def test_vertices_at_one_place_may_follow_different_joints():
     allowed = np.random.default_rng(0).random((len(corners), 6)) < 0.6
     allowed[:, 0] = True
     distances = bone_distances(graph, CHAIN, allowed=allowed)
-    found = skinning_weights(distances, max_influences=None, allowed=allowed)
+    result = skinning_weights(distances, max_influences=None, allowed=allowed)
     free = skinning_weights(bone_distances(graph, CHAIN), max_influences=None)
     expected = np.where(allowed, free, 0)
-    np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), atol=1e-12)
+    np.testing.assert_allclose(result, expected / expected.sum(axis=1, keepdims=True), atol=1e-12)
 
 
 def test_pruning_keeps_the_largest():
     weights = np.array([[0.1, 0.4, 0.2, 0.3], [0.25, 0.25, 0.25, 0.25]])
     order = np.array([3, 2, 1, 0])
-    found = prune(weights, 2, 0.0, order)
-    np.testing.assert_allclose(found, [[0, 4 / 7, 0, 3 / 7], [0, 0, 0.5, 0.5]])
-    found = prune(weights, None, 0.22, order)
-    np.testing.assert_allclose(found[0], [0, 4 / 7, 0, 3 / 7])
-    found = prune(weights, None, 0.9, order)
-    np.testing.assert_allclose(found[0], [0, 1, 0, 0])
+    result = prune(weights, 2, 0.0, order)
+    np.testing.assert_allclose(result, [[0, 4 / 7, 0, 3 / 7], [0, 0, 0.5, 0.5]])
+    result = prune(weights, None, 0.22, order)
+    np.testing.assert_allclose(result[0], [0, 4 / 7, 0, 3 / 7])
+    result = prune(weights, None, 0.9, order)
+    np.testing.assert_allclose(result[0], [0, 1, 0, 0])
 
 
 @pytest.mark.parametrize(

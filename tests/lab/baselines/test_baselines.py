@@ -59,12 +59,12 @@ def test_options_go_to_methods_that_know_them():
 @pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist"}))
 def test_every_method_binds_a_bar(name):
     rig = bar()
-    found = METHODS[name](rig)
-    check_weights(rig, found)
+    result = METHODS[name](rig)
+    check_weights(rig, result)
     x = rig.mesh.vertices[:, 0]
-    assert found.warnings == ()
-    assert (found.weights[x < 0.2].argmax(axis=1) == 0).all()
-    assert (found.weights[x > 0.8].argmax(axis=1) == 1).all()
+    assert result.warnings == ()
+    assert (result.weights[x < 0.2].argmax(axis=1) == 0).all()
+    assert (result.weights[x > 0.8].argmax(axis=1) == 1).all()
     few = METHODS[name](rig, max_influences=1).weights
     np.testing.assert_array_equal((few > 0).sum(axis=1), 1)
 
@@ -91,9 +91,9 @@ def test_weights_that_a_file_cannot_store_are_not_given(name):
     allowed[:5, 0] = False
     allowed[5:10, 1] = False
     rig = Rig(rig.mesh, rig.skeleton, allowed=allowed)
-    found = METHODS[name](rig)
-    check_weights(rig, found)
-    assert not found.weights[~allowed].any()
+    result = METHODS[name](rig)
+    check_weights(rig, result)
+    assert not result.weights[~allowed].any()
 
 
 def test_the_artists_weights_are_the_files():
@@ -181,13 +181,13 @@ def test_voxel_paths_on_a_bar_are_as_long_as_the_bar():
     rig = bar()
     ends = Skeleton([[0.0, 0.1, 0.1], [1.0, 0.1, 0.1]], [-1, -1])
     x = rig.mesh.vertices[:, 0]
-    found = METHODS["voxel"](Rig(rig.mesh, ends), 60, alpha=0).weights
+    result = METHODS["voxel"](Rig(rig.mesh, ends), 60, alpha=0).weights
     # alpha = 0: the ratio of the weights is that of the squared distances.
     middle = (x > 0.3) & (x < 0.7)
-    ratio = np.sqrt(found[middle, 1] / found[middle, 0])
+    ratio = np.sqrt(result[middle, 1] / result[middle, 0])
     np.testing.assert_allclose(ratio, x[middle] / (1 - x[middle]), rtol=0.25)
     centre = np.isclose(x, 0.5)
-    np.testing.assert_allclose(found[centre], 0.5, atol=0.02)
+    np.testing.assert_allclose(result[centre], 0.5, atol=0.02)
 
 
 def test_voxels_leak_across_gaps_narrower_than_themselves():
@@ -222,10 +222,10 @@ def test_spans_fill_what_lies_between_surface_along_two_axes():
             hit = np.flatnonzero(surface[tuple(line)])
             within += len(hit) > 0 and hit[0] <= cell[axis] <= hit[-1]
         expected[cell] |= within >= 2
-    found = voxelize(body, fill="spans").solid
-    assert np.array_equal(found, expected)
+    result = voxelize(body, fill="spans").solid
+    assert np.array_equal(result, expected)
     middle = tuple(np.floor(np.array([0.5, 0.5, 0.5]) * 12).astype(int) + PAD)
-    assert found[middle]
+    assert result[middle]
     assert not voxelize(body, fill="flood").solid[middle]
 
 
@@ -302,7 +302,7 @@ def test_what_blocks_the_view_equals_a_slow_loop():
     vertices, faces = meshes.torus()
     rng = np.random.default_rng(0)
     vertex, target = rng.integers(0, len(vertices), 300), rng.uniform(0, 1, (300, 3))
-    found = Blockers(vertices, faces).blocked(vertex, target)
+    result = Blockers(vertices, faces).blocked(vertex, target)
     for q in range(300):
         start, way, slow = vertices[vertex[q]], target[q] - vertices[vertex[q]], False
         for face in faces:
@@ -314,8 +314,8 @@ def test_what_blocks_the_view_equals_a_slow_loop():
                 continue
             u, v, t = np.linalg.solve(matrix, start - a)
             slow |= u >= 0 and v >= 0 and u + v <= 1 and 1e-9 < t < 1 - 1e-9
-        assert found[q] == slow
-    assert 0.1 < found.mean() < 0.9
+        assert result[q] == slow
+    assert 0.1 < result.mean() < 0.9
 
 
 @pytest.mark.parametrize("heat", [0.2, 1.0])
@@ -326,15 +326,15 @@ def test_heat_along_a_tube_falls_off_as_it_should(heat):
         TriangleMesh(*open_tube(radius)),
         Skeleton([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]], [-1, 0, 1], deform=[True, True, False]),
     )
-    found = METHODS["bone_heat"](rig, heat=heat)
-    check_weights(rig, found)
+    result = METHODS["bone_heat"](rig, heat=heat)
+    check_weights(rig, result)
     x = rig.mesh.vertices[:, 0]
     k = np.sqrt(heat) / radius
     left = 1 - np.cosh(k * x) / (2 * np.cosh(k / 2))
     mixed = (x < 0.499) & (left < 0.94)  # beyond it the smaller weight fades out
     assert mixed.sum() > 100
-    np.testing.assert_allclose(found.weights[mixed, 0], left[mixed], atol=0.02)
-    assert (found.weights[(x < 0.5) & (left > 0.98), 0] == 1).all()
+    np.testing.assert_allclose(result.weights[mixed, 0], left[mixed], atol=0.02)
+    assert (result.weights[(x < 0.5) & (left > 0.98), 0] == 1).all()
 
 
 def test_components_that_no_bone_sees_get_weights_too():
@@ -351,10 +351,10 @@ def test_components_that_no_bone_sees_get_weights_too():
     n, m = len(rig.mesh.vertices), len(inner)
     mesh = TriangleMesh(vertices, np.concatenate([rig.mesh.faces, faces + n, shell.faces + n + m]))
     hidden = Rig(mesh, rig.skeleton)
-    found = METHODS["bone_heat"](hidden)
-    check_weights(hidden, found)
+    result = METHODS["bone_heat"](hidden)
+    check_weights(hidden, result)
     said = f"{m + 8} of {len(vertices)} welded vertices lie on components that no bone sees"
-    assert said in found.warnings[0]
+    assert said in result.warnings[0]
 
 
 @pytest.mark.parametrize(
@@ -371,10 +371,10 @@ def test_bone_heat_is_near_to_blenders(name, limit):
     away, row = cKDTree(data["vertices"]).query(rig.mesh.vertices)
     assert away.max() < 1e-6
     column = [list(data["joint_names"]).index(joint) for joint in rig.skeleton.names]
-    theirs = data["weights"][row][:, column].astype(float)
-    held = theirs.sum(axis=1) > 0
-    theirs = theirs[held] / theirs[held].sum(axis=1, keepdims=True)
+    reference = data["weights"][row][:, column].astype(float)
+    held = reference.sum(axis=1) > 0
+    reference = reference[held] / reference[held].sum(axis=1, keepdims=True)
     share = vertex_shares(rig.mesh)[held]
-    ours = METHODS["bone_heat"](rig).weights[held]
-    assert weight_l1(ours, theirs, share) < limit
-    assert weight_l1(METHODS["euclidean"](rig).weights[held], theirs, share) > 2 * limit
+    computed = METHODS["bone_heat"](rig).weights[held]
+    assert weight_l1(computed, reference, share) < limit
+    assert weight_l1(METHODS["euclidean"](rig).weights[held], reference, share) > 2 * limit

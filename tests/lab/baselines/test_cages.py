@@ -60,8 +60,8 @@ def test_a_cage_gets_more_triangles_until_it_holds_all():
     solid = np.zeros((9, 9, 9), bool)
     solid[2:7, 2:7, 2:7] = True
     corners = np.array(np.meshgrid(*[[2.0, 7.0]] * 3)).reshape(3, -1).T
-    found = worker.make_cage(solid, corners, 4)
-    assert 4 < len(found["faces"]) < 400
+    result = worker.make_cage(solid, corners, 4)
+    assert 4 < len(result["faces"]) < 400
     with pytest.raises(RuntimeError, match="holds the whole mesh"):
         worker.make_cage(solid, np.array([[50.0, 0, 0]]), 4)
 
@@ -103,16 +103,16 @@ def test_mean_values_are_means_over_all_directions():
         share = trimesh.triangles.points_to_barycentric(cage.triangles[face], hit)
         seen = np.einsum("rc,rcj->rj", share, values[faces[face]])
         slow = (near[:, None] * seen).sum(axis=0) / near.sum()
-        found = mean_values(vertices, faces, point[None], values)[0]
-        np.testing.assert_allclose(found, slow, atol=2e-3)
+        result = mean_values(vertices, faces, point[None], values)[0]
+        np.testing.assert_allclose(result, slow, atol=2e-3)
 
 
 def test_mean_values_on_the_cage_are_its_own():
     vertices, faces, values = crooked_box()
     np.testing.assert_allclose(mean_values(vertices, faces, vertices, values), values)
     middle = vertices[faces].mean(axis=1)
-    found = mean_values(vertices, faces, middle, values)
-    np.testing.assert_allclose(found, values[faces].mean(axis=1), atol=1e-9)
+    result = mean_values(vertices, faces, middle, values)
+    np.testing.assert_allclose(result, values[faces].mean(axis=1), atol=1e-9)
 
 
 # Harmonic coordinates
@@ -120,8 +120,8 @@ def test_mean_values_on_the_cage_are_its_own():
 
 def test_harmonic_values_carry_linear_functions():
     vertices, faces, _ = crooked_box()
-    found = harmonic_values(vertices, faces, INSIDE, vertices, 32)
-    np.testing.assert_allclose(found, INSIDE, atol=0.5 / 32)
+    result = harmonic_values(vertices, faces, INSIDE, vertices, 32)
+    np.testing.assert_allclose(result, INSIDE, atol=0.5 / 32)
 
 
 def test_harmonic_values_equal_libigls_on_tetrahedra():
@@ -135,16 +135,16 @@ def test_harmonic_values_equal_libigls_on_tetrahedra():
     expected = igl.harmonic(nodes, tets.astype(np.int64), border, held, 1)
     inner = ((nodes > 0.15) & (nodes < 0.85)).all(axis=1)
     assert inner.sum() > 100
-    found = harmonic_values(vertices, faces, nodes[inner], values, 40)
-    np.testing.assert_allclose(found, expected[inner], atol=0.03)
-    assert values.min() <= found.min()
-    assert found.max() <= values.max()
+    result = harmonic_values(vertices, faces, nodes[inner], values, 40)
+    np.testing.assert_allclose(result, expected[inner], atol=0.03)
+    assert values.min() <= result.min()
+    assert result.max() <= values.max()
 
 
 def test_nothing_is_carried_outside_the_cage():
     vertices, faces, values = crooked_box()
-    found = harmonic_values(vertices, faces, np.array([[1.5, 0.5, 0.5]]), values, 16)
-    assert np.isnan(found).all()
+    result = harmonic_values(vertices, faces, np.array([[1.5, 0.5, 0.5]]), values, 16)
+    assert np.isnan(result).all()
 
 
 # The methods
@@ -169,10 +169,10 @@ def test_a_cage_joins_what_is_near(name):
 @pytest.mark.parametrize("name", ["harmonic", "mean_value"])
 def test_a_cage_that_cannot_be_made_says_so(name, monkeypatch):
     monkeypatch.setattr(apart, "COMMAND", ("false",))
-    found = METHODS[name](bar(4))
-    assert found.weights is None
-    assert "libigl's cage stopped with exit code 1" in found.failed
-    assert set(found.seconds) == {"cage"}
+    result = METHODS[name](bar(4))
+    assert result.weights is None
+    assert "libigl's cage stopped with exit code 1" in result.failed
+    assert set(result.seconds) == {"cage"}
 
 
 def test_equations_that_cannot_be_solved_say_so(monkeypatch):
@@ -180,6 +180,6 @@ def test_equations_that_cannot_be_solved_say_so(monkeypatch):
     vertices, faces, values = crooked_box()
     with pytest.raises(WorkFailedError, match="could not be solved"):
         harmonic_values(vertices, faces, INSIDE, values, 8)
-    found = cage_methods.harmonic(bar(4))
-    assert found.failed == "the harmonic equations could not be solved"
-    assert set(found.seconds) == {"cage", "weights"}
+    result = cage_methods.harmonic(bar(4))
+    assert result.failed == "the harmonic equations could not be solved"
+    assert set(result.seconds) == {"cage", "weights"}

@@ -52,48 +52,48 @@ def broken(rig):
 def test_each_method_is_measured_on_each_rig():
     rigs = [character("a"), character("b", clips=False)]
     names = ["artist", "euclidean", "cutcell"]
-    found = compare(iter(rigs), names, resolution=16)
-    assert found.methods == tuple(names)
-    assert [rig.name for rig in found.rigs] == ["a", "b"]
-    for rig in found.rigs:
+    result = compare(iter(rigs), names, resolution=16)
+    assert result.methods == tuple(names)
+    assert [rig.name for rig in result.rigs] == ["a", "b"]
+    for rig in result.rigs:
         assert [score.method for score in rig.scores] == names
-        artist, euclidean, ours = rig.scores
+        artist, euclidean, computed = rig.scores
         assert (artist.l1, artist.precision, artist.recall, artist.deformation) == (0, 1, 1, 0)
-        assert 0 < ours.l1 < 2
+        assert 0 < computed.l1 < 2
         assert euclidean.deformation > 0
         assert euclidean.worst[0].mean >= euclidean.worst[-1].mean
         assert euclidean.unweighted == 0
         assert euclidean.crosstalk is None  # a ball has no gap
-    assert found.rigs[0].scores[1].clips > 0
-    assert found.rigs[1].scores[1].clips is None
-    assert found.statistic("euclidean", "clips").count == 1
+    assert result.rigs[0].scores[1].clips > 0
+    assert result.rigs[1].scores[1].clips is None
+    assert result.statistic("euclidean", "clips").count == 1
 
 
 def test_failures_are_told_and_stop_nothing():
     known = {"dead": dead, "lame": lame, "broken": broken}
-    found = compare([character()], {**known, "euclidean": METHODS["euclidean"]})
-    first, second, crash, third = found.rigs[0].scores
+    result = compare([character()], {**known, "euclidean": METHODS["euclidean"]})
+    first, second, crash, third = result.rigs[0].scores
     assert crash.failed == "ZeroDivisionError: division by zero"
     assert (first.failed, first.l1, first.seconds) == ("no power", None, 1.5)
     assert second.failed == "not this one"
     assert third.failed == ""
-    assert found.statistic("dead", "l1").median is None
-    text = comparison_markdown(found)
+    assert result.statistic("dead", "l1").median is None
+    text = comparison_markdown(result)
     assert "- dead on ball: no power" in text
     assert "- lame on ball: not this one" in text
     assert "| ball | failed | failed | failed | 0." in text
-    json.dumps(found.to_dict(), allow_nan=False)
+    json.dumps(result.to_dict(), allow_nan=False)
 
 
 def test_statistics_by_hand():
-    found = compare([character("a"), character("b")], ["euclidean"])
-    statistic = found.statistic("euclidean", "l1")
-    values = [rig.scores[0].l1 for rig in found.rigs]
+    result = compare([character("a"), character("b")], ["euclidean"])
+    statistic = result.statistic("euclidean", "l1")
+    values = [rig.scores[0].l1 for rig in result.rigs]
     assert statistic.count == 2
     assert statistic.median == pytest.approx(np.median(values))
     assert statistic.mean == pytest.approx(np.mean(values))
     assert statistic.worst == max(values)
-    document = found.to_dict()
+    document = result.to_dict()
     assert document["summary"]["euclidean"]["l1"]["mean"] == statistic.mean
     assert set(document["summary"]["euclidean"]) == set(MEASURES)
 
@@ -159,9 +159,9 @@ def test_ctrl_c_in_a_dispatcher_stops_everything():
 
 
 def test_a_comparison_comes_back_from_json():
-    found = compare([character("a"), character("b")], ["artist", "euclidean"])
-    again = Comparison.from_dict(json.loads(json.dumps(found.to_dict())))
-    assert again == found
+    result = compare([character("a"), character("b")], ["artist", "euclidean"])
+    again = Comparison.from_dict(json.loads(json.dumps(result.to_dict())))
+    assert again == result
 
 
 def test_comparisons_are_merged():
@@ -188,12 +188,12 @@ def shown(comparison, width):
 def test_a_terminal_of_any_width_shows_all_numbers(width):
     methods = {"quasi_harmonic": METHODS["euclidean"], "dead": dead, "artist": METHODS["artist"]}
     rigs = [character("a_rig_with_a_long_name_of_two_lines"), character("b")]
-    found = compare(rigs, methods)
-    text = shown(found, width)
+    result = compare(rigs, methods)
+    text = shown(result, width)
     lines = text.splitlines()
     assert max(map(len, lines)) <= width
     row = next(line for line in lines if line.startswith("quasi_harmonic"))
-    statistic = found.statistic("quasi_harmonic", "l1")
+    statistic = result.statistic("quasi_harmonic", "l1")
     assert f"{statistic.median:.3f}  {statistic.mean:.3f}" in row
     assert row.rstrip().endswith("2/2")
     assert ("crosstalk" in text) == (width >= ROOMY)
@@ -205,26 +205,26 @@ def test_a_terminal_of_any_width_shows_all_numbers(width):
 @pytest.mark.parametrize("width", [80, 120])
 def test_one_rig_is_shown_in_full(width):
     methods = {"euclidean": METHODS["euclidean"], "dead": dead}
-    found = compare([character("ball")], methods)
-    text = shown(found, width)
+    result = compare([character("ball")], methods)
+    text = shown(result, width)
     assert max(map(len, text.splitlines())) <= width
     assert "ball: 162 vertices, 3 joints with weight" in text
-    turn = found.rigs[0].scores[0].worst[0]
+    turn = result.rigs[0].scores[0].worst[0]
     assert f"{turn.name}, {turn.axis}" in text
     assert "dead failed: no power" in text
 
 
 def test_a_figure_is_drawn(tmp_path):
-    found = compare([character("a"), character("b")], {"cutcell": dead, **some_methods()})
+    result = compare([character("a"), character("b")], {"cutcell": dead, **some_methods()})
     path = tmp_path / "plot.png"
-    plot_comparison(found, path)
+    plot_comparison(result, path)
     with Image.open(path) as image:
         assert image.width > 1300
         pixels = np.asarray(image.convert("RGB"))
     assert tuple(pixels[0, 0]) == (255, 255, 255)
     assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 20
     svg = tmp_path / "plot.svg"
-    plot_comparison(found, svg)
+    plot_comparison(result, svg)
     assert "<svg" in svg.read_text()
 
 
@@ -233,17 +233,17 @@ def some_methods():
 
 
 def test_figures_that_cannot_be_drawn_say_why(tmp_path, monkeypatch):
-    found = compare([character()], {"dead": dead})
+    result = compare([character()], {"dead": dead})
     with pytest.raises(FileError, match=r'cannot be "\.gif"'):
-        plot_comparison(found, tmp_path / "plot.gif")
+        plot_comparison(result, tmp_path / "plot.gif")
     with pytest.raises(FileError, match="no folder"):
-        plot_comparison(found, tmp_path / "nowhere" / "plot.png")
+        plot_comparison(result, tmp_path / "nowhere" / "plot.png")
     with pytest.raises(ParameterError, match="nothing to plot"):
-        plot_comparison(found, tmp_path / "plot.png")
+        plot_comparison(result, tmp_path / "plot.png")
     (tmp_path / "taken.png").mkdir()
-    found = compare([character()], ["euclidean"])
+    result = compare([character()], ["euclidean"])
     with pytest.raises(FileError, match="is a folder"):
-        plot_comparison(found, tmp_path / "taken.png")
+        plot_comparison(result, tmp_path / "taken.png")
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingLibraryError, match=r"cutcell\[plot\]"):
-        plot_comparison(found, tmp_path / "plot.png")
+        plot_comparison(result, tmp_path / "plot.png")

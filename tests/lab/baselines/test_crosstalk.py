@@ -22,9 +22,9 @@ def test_two_prongs_of_a_fork(name):
     rig = fork()
     pairs = find_gaps(build_graph(rig.mesh, 64, connectivity=26), near=0.02, far=0.2)
     assert len(pairs) > 10
-    found = METHODS[name](rig)
-    assert found.failed == ""
-    leak = crosstalk(found.weights, pairs).mean
+    result = METHODS[name](rig)
+    assert result.failed == ""
+    leak = crosstalk(result.weights, pairs).mean
     alone = crosstalk(METHODS[name](rig, max_influences=1).weights, pairs).mean
     assert name in TIDY | LEAKING
     if name in TIDY:
@@ -50,8 +50,8 @@ def test_ours_share_nothing_where_voxels_leak(place, demo_paths):
     leaks = {name: leak(name) for name in (*OURS, "voxel", "euclidean")}
     for name in OURS:
         assert leaks[name][1] < 1e-3
-    ours, voxel = leaks["cutcell_any"], leaks["voxel"]
-    assert ours[0] < (LIMIT if place.demo != "octopus" else 0.7) * voxel[0]
+    computed, voxel = leaks["cutcell_any"], leaks["voxel"]
+    assert computed[0] < (LIMIT if place.demo != "octopus" else 0.7) * voxel[0]
     assert voxel[1] > 0.05
     # Straight to the nearest bone, fingers may stay apart by luck; with all joints none do.
-    assert leaks["euclidean"][0] > ours[0]
+    assert leaks["euclidean"][0] > computed[0]

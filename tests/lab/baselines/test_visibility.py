@@ -31,8 +31,8 @@ def slow_distances(body, reach):
         for a, b in zip(face, np.roll(face, 1), strict=True):
             graph.add_edge(a, b, length=np.linalg.norm(body.points[a] - body.points[b]))
     corners = body.points[body.faces]
-    found = np.empty((len(body.bones.joint), len(body.points)))
-    for row, start, end in zip(found, body.bones.start, body.bones.end, strict=True):
+    result = np.empty((len(body.bones.joint), len(body.points)))
+    for row, start, end in zip(result, body.bones.start, body.bones.end, strict=True):
         straight, seen = np.empty(len(row)), []
         for v, point in enumerate(body.points):
             along = end - start
@@ -62,7 +62,7 @@ def slow_distances(body, reach):
             least = min(away[s] for s in seen)
             last = min(straight[s] for s in seen if away[s] <= least + 1e-12)
             row[v] = straight[v] if v in seen else least + last
-    return found
+    return result
 
 
 def turned(vertices, seed):
@@ -95,10 +95,10 @@ def test_in_a_convex_body_all_distances_are_straight(make):
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     joints = low + np.array([[0.3], [0.5], [0.7]]) * (high - low)
     rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, [-1, 0, 1]))
-    found = METHODS["visibility"](rig, reach=None)
-    check_weights(rig, found)
-    assert found.warnings == ()
-    np.testing.assert_allclose(found.weights, METHODS["euclidean"](rig).weights, atol=1e-9)
+    result = METHODS["visibility"](rig, reach=None)
+    check_weights(rig, result)
+    assert result.warnings == ()
+    np.testing.assert_allclose(result.weights, METHODS["euclidean"](rig).weights, atol=1e-9)
 
 
 @pytest.mark.parametrize("reach", [None, 1.3])
@@ -109,16 +109,16 @@ def test_between_the_prongs_of_a_fork_the_way_is_over_the_surface(reach):
     if reach is not None:
         limits = [reach * np.percentile(s[v], 15) for s, v in zip(straight, seen, strict=True)]
         seen &= straight <= np.array(limits)[:, None]
-    found = over_surface(body, straight, seen)
+    result = over_surface(body, straight, seen)
     expected = slow_distances(body, reach)
     # Where two vertices are equally near, either may be the one that is gone through.
-    ties = np.abs(found - expected) > 1e-9
+    ties = np.abs(result - expected) > 1e-9
     assert ties.mean() < 0.05
-    assert (found >= expected - 1e-9).all()
+    assert (result >= expected - 1e-9).all()
     tips = (rig.mesh.vertices[:, 0] > 0.95) & (rig.mesh.vertices[:, 1] > 0.105)
     lower = np.flatnonzero(body.bones.end[:, 1] == body.bones.end[:, 1].min())[-1]
     size = np.ptp(rig.mesh.vertices, axis=0).max() / np.ptp(body.points, axis=0).max()
-    way = size * found[lower, body.index[tips]]
+    way = size * result[lower, body.index[tips]]
     assert (way > 0.4).all(), "there and back again"
     assert (size * straight[lower, body.index[tips]] < 0.3).all()
     check_weights(rig, METHODS["visibility"](rig, reach=reach))
@@ -132,12 +132,12 @@ def test_parts_that_no_path_joins_are_far_from_each_others_bones():
     )
     body = Body.of(rig)
     straight = body.straight()
-    found = over_surface(body, straight, visible(body))
+    result = over_surface(body, straight, visible(body))
     first = body.points[:, 1] < body.points[:, 1].mean()
     for b, joint in enumerate(body.bones.joint):
         other = first if joint >= 2 else ~first
-        np.testing.assert_allclose(found[b, other], straight[b, other] + APART)
-        np.testing.assert_allclose(found[b, ~other], straight[b, ~other])
+        np.testing.assert_allclose(result[b, other], straight[b, other] + APART)
+        np.testing.assert_allclose(result[b, ~other], straight[b, ~other])
 
 
 def test_what_no_bone_reaches_follows_its_nearest():
@@ -146,13 +146,13 @@ def test_what_no_bone_reaches_follows_its_nearest():
         TriangleMesh(vertices, faces),
         Skeleton([[0.1, 0.1, 0.1], [0.3, 0.1, 0.1]], [-1, 0]),
     )
-    found = METHODS["visibility"](rig)
-    check_weights(rig, found)
+    result = METHODS["visibility"](rig)
+    check_weights(rig, result)
     half = len(vertices) // 2
-    assert len(found.warnings) == 1
-    assert found.warnings[0].startswith(f"{half} of {2 * half} welded vertices follow their near")
+    assert len(result.warnings) == 1
+    assert result.warnings[0].startswith(f"{half} of {2 * half} welded vertices follow their near")
     np.testing.assert_allclose(
-        found.weights[half:], METHODS["euclidean"](rig).weights[half:], atol=1e-9
+        result.weights[half:], METHODS["euclidean"](rig).weights[half:], atol=1e-9
     )
 
 

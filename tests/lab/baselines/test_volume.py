@@ -39,8 +39,8 @@ def nothing_remembered():
 
 def filled(nx=6):
     points, faces = grid_box(nx)
-    found = tetrahedra.by_tetgen(points, faces, HANDLES)
-    return found["nodes"], found["tets"]
+    result = tetrahedra.by_tetgen(points, faces, HANDLES)
+    return result["nodes"], result["tets"]
 
 
 def held(nodes):
@@ -61,14 +61,14 @@ def volume_of(nodes, tets):
 def test_tetrahedra_fill_a_box(make):
     points, faces = grid_box(6)
     edge = {"edge": 0.1} if make is tetrahedra.by_tetwild else {}
-    found = make(points, faces, HANDLES, **edge)
-    volume = volume_of(found["nodes"], found["tets"])
+    result = make(points, faces, HANDLES, **edge)
+    volume = volume_of(result["nodes"], result["tets"])
     assert (abs(volume) > 0).all()
     assert abs(volume).sum() == pytest.approx(0.04, rel=0.02)
-    assert cKDTree(found["nodes"]).query(HANDLES)[0].max() < 0.01
-    places = np.einsum("kc,kcx->kx", found["shares"], found["nodes"][found["corners"]])
+    assert cKDTree(result["nodes"]).query(HANDLES)[0].max() < 0.01
+    places = np.einsum("kc,kcx->kx", result["shares"], result["nodes"][result["corners"]])
     np.testing.assert_allclose(places, points, atol=5e-3)
-    np.testing.assert_allclose(found["shares"].sum(axis=1), 1)
+    np.testing.assert_allclose(result["shares"].sum(axis=1), 1)
 
 
 def test_points_become_nodes_and_the_volume_stays():
@@ -97,13 +97,13 @@ def test_what_tetgen_cannot_fill_ftetwild_does():
     rig = bar(4)
     rig = Rig(TriangleMesh(rig.mesh.vertices, rig.mesh.faces[1:]), rig.skeleton)
     for name in ("biharmonic", "bbw", "quasi_harmonic"):
-        found = METHODS[name](rig)
-        check_weights(rig, found)
-        assert "TetGen cannot fill the surface" in found.warnings[0]
-        assert "fTetWild filled it" in found.warnings[0]
+        result = METHODS[name](rig)
+        check_weights(rig, result)
+        assert "TetGen cannot fill the surface" in result.warnings[0]
+        assert "fTetWild filled it" in result.warnings[0]
         x = rig.mesh.vertices[:, 0]
-        assert found.weights[x < 0.2, 0].min() > 0.8
-        assert found.weights[x > 0.8, 1].min() > 0.8
+        assert result.weights[x < 0.2, 0].min() > 0.8
+        assert result.weights[x > 0.8, 1].min() > 0.8
 
 
 def test_surfaces_that_cannot_be_filled_say_so():
@@ -111,11 +111,11 @@ def test_surfaces_that_cannot_be_filled_say_so():
     mesh = TriangleMesh(flat, np.array([[0, 1, 2], [1, 3, 2]]))
     rig = Rig(mesh, Skeleton([[0.2, 0.5, 0], [0.8, 0.5, 0]], [-1, 0]))
     for name in ("bbw", "biharmonic", "quasi_harmonic"):
-        found = METHODS[name](rig)
-        assert found.weights is None
-        assert "TetGen" in found.failed
-        assert "fTetWild" in found.failed
-        assert found.seconds["tetrahedra"] > 0
+        result = METHODS[name](rig)
+        assert result.weights is None
+        assert "TetGen" in result.failed
+        assert "fTetWild" in result.failed
+        assert result.seconds["tetrahedra"] > 0
 
 
 # Smooth weights
@@ -123,16 +123,16 @@ def test_surfaces_that_cannot_be_filled_say_so():
 
 def test_biharmonic_weights_equal_libigls():
     nodes, tets = filled()
-    found = smooth.unbounded(nodes, tets, HANDLES, COLUMN)["weights"]
+    result = smooth.unbounded(nodes, tets, HANDLES, COLUMN)["weights"]
     expected = igl.harmonic(nodes, tets, *held(nodes), 2)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
-    np.testing.assert_allclose(found.sum(axis=1), 1, atol=1e-6)
+    np.testing.assert_allclose(result, expected, atol=1e-6)
+    np.testing.assert_allclose(result.sum(axis=1), 1, atol=1e-6)
 
 
 def test_bounded_weights_equal_scipys_least_squares():
     nodes, tets = filled()
     fixed, values = held(nodes)
-    found = smooth.bounded(nodes, tets, HANDLES, COLUMN, 50)["weights"]
+    result = smooth.bounded(nodes, tets, HANDLES, COLUMN, 50)["weights"]
     stiffness = igl.cotmatrix(nodes, tets).toarray()
     mass = igl.massmatrix(nodes, tets, igl.MASSMATRIX_TYPE_DEFAULT).diagonal()
     root = stiffness / np.sqrt(mass)[:, None]
@@ -140,17 +140,17 @@ def test_bounded_weights_equal_scipys_least_squares():
     for column in range(2):
         right = -root[:, fixed] @ values[:, column]
         best = lsq_linear(root[:, free], right, (0, 1), tol=1e-12)
-        np.testing.assert_allclose(found[free, column], best.x, atol=2e-3)
+        np.testing.assert_allclose(result[free, column], best.x, atol=2e-3)
     unbounded = smooth.unbounded(nodes, tets, HANDLES, COLUMN)["weights"]
     assert unbounded.max() > 1.001  # bounds do matter
 
 
 def test_bounded_weights_on_a_bar_mirror_each_other():
     rig = bar()
-    found = METHODS["bbw"](rig).weights
+    result = METHODS["bbw"](rig).weights
     x = rig.mesh.vertices[:, 0]
-    assert found[np.isclose(x, 0.5), 0].mean() == pytest.approx(0.5, abs=0.03)
-    means = [found[np.isclose(x, at), 0].mean() for at in np.unique(x)]
+    assert result[np.isclose(x, 0.5), 0].mean() == pytest.approx(0.5, abs=0.03)
+    means = [result[np.isclose(x, at), 0].mean() for at in np.unique(x)]
     assert (np.diff(means) < 0.02).all()
 
 
@@ -159,16 +159,16 @@ def test_bounded_weights_on_a_bar_mirror_each_other():
 
 def test_without_a_step_quasi_harmonic_weights_are_libigls_harmonic_ones():
     nodes, tets = filled()
-    found = quasi_harmonic.quasi_harmonic(nodes, tets, HANDLES, COLUMN, 0)["weights"]
-    np.testing.assert_allclose(found, igl.harmonic(nodes, tets, *held(nodes), 1), atol=1e-9)
+    result = quasi_harmonic.quasi_harmonic(nodes, tets, HANDLES, COLUMN, 0)["weights"]
+    np.testing.assert_allclose(result, igl.harmonic(nodes, tets, *held(nodes), 1), atol=1e-9)
 
 
 def test_between_two_held_ends_they_fall_off_evenly():
     nodes, tets = filled(10)
     ends = np.flatnonzero(np.isin(nodes[:, 0], (0, 1)))
     column = nodes[ends, 0].astype(int)
-    found = quasi_harmonic.quasi_harmonic(nodes, tets, nodes[ends], column, 0)["weights"]
-    np.testing.assert_allclose(found[:, 1], nodes[:, 0], atol=1e-9)
+    result = quasi_harmonic.quasi_harmonic(nodes, tets, nodes[ends], column, 0)["weights"]
+    np.testing.assert_allclose(result[:, 1], nodes[:, 0], atol=1e-9)
 
 
 def test_the_slope_of_their_energy_equals_finite_differences():
@@ -194,13 +194,13 @@ def test_the_slope_of_their_energy_equals_finite_differences():
 
 def test_they_come_near_to_the_smoothest_weights_and_stay_within_bounds():
     nodes, tets = filled(10)
-    found = quasi_harmonic.quasi_harmonic(nodes, tets, HANDLES, COLUMN, 8)
+    result = quasi_harmonic.quasi_harmonic(nodes, tets, HANDLES, COLUMN, 8)
     matrix = smooth.smoothness(nodes, tets)
     best = smooth.unbounded(nodes, tets, HANDLES, COLUMN)["weights"]
     least = (best * (matrix @ best)).sum() / 2
-    energy = found["energy"]
+    energy = result["energy"]
     assert least < energy.min() < 0.5 * energy[0]
-    weights = found["weights"]
+    weights = result["weights"]
     assert (weights * (matrix @ weights)).sum() / 2 == pytest.approx(energy.min())
     np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-9)
     # Tetrahedra may bend the principle a little, as wide angles do with any such weights.
@@ -222,9 +222,9 @@ def test_they_come_near_to_the_smoothest_weights_and_stay_within_bounds():
 )
 def test_a_library_that_dies_takes_nothing_along(monkeypatch, code, words):
     monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", code))
-    found = METHODS["bbw"](bar(4), limit=0.5 if "sleep" in code else 60)
-    assert found.weights is None
-    assert re.search(words, found.failed)
+    result = METHODS["bbw"](bar(4), limit=0.5 if "sleep" in code else 60)
+    assert result.weights is None
+    assert re.search(words, result.failed)
 
 
 def test_a_solver_that_dies_is_told_from_a_mesher(monkeypatch):
@@ -233,9 +233,9 @@ def test_a_solver_that_dies_is_told_from_a_mesher(monkeypatch):
         "runpy.run_module('cutcell.isolated', run_name='__main__', alter_sys=True)"
     )
     monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", code))
-    found = METHODS["bbw"](bar(4))
-    assert found.failed == "libigl's solver stopped with exit code 4: it said nothing"
-    assert set(found.seconds) == {"tetrahedra", "weights"}
+    result = METHODS["bbw"](bar(4))
+    assert result.failed == "libigl's solver stopped with exit code 4: it said nothing"
+    assert set(result.seconds) == {"tetrahedra", "weights"}
 
 
 def test_without_a_library_the_result_says_so(monkeypatch):

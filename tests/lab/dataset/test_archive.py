@@ -65,9 +65,9 @@ def write(path, entries, protocol=4):
 )
 def test_every_asset_comes_back_as_it_was(tmp_path, protocol, count):
     entries = [asset(k) for k in range(count)]
-    found = list(read_archive(write(tmp_path / "a.npz", entries, protocol)))
-    assert [f.name for f in found] == [f"made_{k}" for k in range(count)]
-    for entry, one in zip(entries, found, strict=True):
+    result = list(read_archive(write(tmp_path / "a.npz", entries, protocol)))
+    assert [f.name for f in result] == [f"made_{k}" for k in range(count)]
+    for entry, one in zip(entries, result, strict=True):
         assert not one.error
         assert set(one.arrays) == set(entry)
         for key, value in entry.items():
@@ -88,10 +88,10 @@ def test_an_attack_is_told_and_not_run(tmp_path, protocol):
     entries[5]["joint_names"] = ["a", Attack(mark)]
     entries[6]["more"] = {1, 2}
     path = write(tmp_path / "a.npz", entries, protocol)
-    found = list(read_archive(path))
+    result = list(read_archive(path))
     assert not mark.exists()
-    assert [k for k, f in enumerate(found) if f.error] == [2, 4, 5, 6]
-    assert all("makedirs" in found[k].error for k in (2, 4, 5))
+    assert [k for k, f in enumerate(result) if f.error] == [2, 4, 5, 6]
+    assert all("makedirs" in result[k].error for k in (2, 4, 5))
     with np.load(path, allow_pickle=True) as python:
         python["arr_0"]
     assert mark.exists(), "it would have run otherwise"

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ import cutcell_lab
 from cutcell.errors import CutcellError, FileError, ParameterError
 from cutcell.runtime.memory import SHARE
 from cutcell_assets.generate import KINDS, generate
+from cutcell_lab.cli.dataset import print_stretched
+from cutcell_lab.dataset.audit.report import bind_counts
 from cutcell_lab.dataset.bind import binding
 from cutcell_lab.dataset.bind.binding import bind_all, bind_isolated
 from cutcell_lab.dataset.bind.cluster import connected
@@ -78,6 +81,18 @@ def test_every_asset_is_there_or_says_why_not(made):
     np.testing.assert_array_equal(entry.artist, rig.weights.astype(np.float32))
     assert rows["rig2"]["nodes"] == len(binding.graph.nodes)
     assert rows["rig2"]["l1"] == cutcell_lab.metrics.weight_l1(binding.weights, rig.weights)
+    assert rows["rig2"]["stretch"] == binding.stretch.share
+
+
+def test_assets_that_stretch_are_listed_the_worst_first(made, capsys):
+    _, _, report = made
+    shares = {"rig0": 0.2, "rig1": 0.04, "rig2": 0.4, "broken": None}
+    rows = [{**row, "stretch": shares.get(row["name"], 0.0)} for row in report.rows]
+    stretched = replace(report, rows=rows).stretched
+    assert list(stretched.items()) == [("rig2", 0.4), ("rig0", 0.2)]
+    assert bind_counts(replace(report, rows=rows))["stretched"] == "2"
+    print_stretched(stretched)
+    assert "rig2: 40% of the surface stretches" in capsys.readouterr().err
 
 
 def test_single_bones_are_at_least_as_far_as_their_joint(made):
@@ -252,8 +267,8 @@ def test_a_killed_run_goes_on_to_the_same_store(made, tmp_path):
 @pytest.mark.parametrize("processes", [False, True])
 def test_no_other_machine_can_reach_the_workers(processes):
     with connected(None, 1, processes):
-        ours = [psutil.Process(), *psutil.Process().children(recursive=True)]
-        sockets = [socket for process in ours for socket in process.net_connections("inet")]
+        computed = [psutil.Process(), *psutil.Process().children(recursive=True)]
+        sockets = [socket for process in computed for socket in process.net_connections("inet")]
         addresses = {s.laddr.ip for s in sockets if s.status == psutil.CONN_LISTEN}
     assert addresses <= {"127.0.0.1", "::1"}
 
@@ -284,9 +299,9 @@ def test_faces_are_found_from_edges():
     edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
     faces = faces_of_edges(mesh.vertices, edges)
     known = {tuple(sorted(f)) for f in mesh.faces.tolist()}
-    found = {tuple(sorted(f)) for f in faces.tolist()}
-    assert len(known - found) == 0
-    assert len(found) < 1.02 * len(known)
+    result = {tuple(sorted(f)) for f in faces.tolist()}
+    assert len(known - result) == 0
+    assert len(result) < 1.02 * len(known)
     square = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
     with pytest.raises(FileError, match="no triangles"):
         faces_of_edges(np.zeros((4, 3)), square)

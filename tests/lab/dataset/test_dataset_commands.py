@@ -60,7 +60,7 @@ def test_from_an_archive_to_training_data(tmp_path):
 
 
 def test_wrong_inputs_are_sentences(tmp_path):
-    for words, told in (
+    for words, reports in (
         (("split", tmp_path / "none.npz", tmp_path / "out"), "no such file"),
         (("bind", tmp_path / "alone"), "give rigs"),
         (("bind", tmp_path / "none", tmp_path / "out"), "no such file"),
@@ -70,7 +70,7 @@ def test_wrong_inputs_are_sentences(tmp_path):
     ):
         result = run(*words)
         assert result.exit_code == 2
-        assert told in result.stderr
+        assert reports in result.stderr
 
 
 @pytest.mark.parametrize("command", ["split", "bind", "audit", "export", "generate"])

@@ -62,18 +62,18 @@ def slow_deformation_error(rig, ours, theirs, degrees, joints=None):
 
 
 def test_l1_by_hand():
-    ours = [[1, 0, 0], [0.5, 0.5, 0], [0, 0, 1]]
-    theirs = [[1, 0, 0], [0, 1, 0], [1, 0, 0]]
-    assert weight_l1(ours, theirs) == pytest.approx((0 + 1 + 2) / 3)
-    assert weight_l1(ours, theirs, [1, 1, 0]) == pytest.approx(0.5)
-    assert weight_l1(ours, ours) == 0
+    computed = [[1, 0, 0], [0.5, 0.5, 0], [0, 0, 1]]
+    reference = [[1, 0, 0], [0, 1, 0], [1, 0, 0]]
+    assert weight_l1(computed, reference) == pytest.approx((0 + 1 + 2) / 3)
+    assert weight_l1(computed, reference, [1, 1, 0]) == pytest.approx(0.5)
+    assert weight_l1(computed, computed) == 0
 
 
 def test_precision_and_recall_by_hand():
-    ours = [[0.5, 0.5, 0], [1, 0, 0]]
-    theirs = [[1, 0, 0], [0, 0.9995, 0.0005]]
-    assert precision_recall(ours, theirs) == (pytest.approx(1 / 3), pytest.approx(1 / 2))
-    assert precision_recall(ours, ours) == (1, 1)
+    computed = [[0.5, 0.5, 0], [1, 0, 0]]
+    reference = [[1, 0, 0], [0, 0.9995, 0.0005]]
+    assert precision_recall(computed, reference) == (pytest.approx(1 / 3), pytest.approx(1 / 2))
+    assert precision_recall(computed, computed) == (1, 1)
 
 
 def test_precision_without_any_weight_is_no_number():
@@ -103,10 +103,10 @@ def test_l1_is_a_distance(a, b):
 @pytest.mark.parametrize("degrees", [30, 90])
 def test_the_closed_form_equals_moving_the_mesh(degrees):
     rig = chain()
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
-    ours[5] = 0  # stays where it is
-    slow = slow_deformation_error(rig, ours, theirs, degrees)
-    fast = deformation_error(rig, ours, theirs, degrees)
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
+    computed[5] = 0  # stays where it is
+    slow = slow_deformation_error(rig, computed, reference, degrees)
+    fast = deformation_error(rig, computed, reference, degrees)
     np.testing.assert_allclose(fast.vertex, slow.max(axis=0), rtol=1e-9)
     np.testing.assert_array_equal(fast.joint, slow.argmax(axis=0) // 3)
     assert fast.mean == pytest.approx(slow.max(axis=0).mean())
@@ -116,28 +116,28 @@ def test_the_closed_form_equals_moving_the_mesh(degrees):
 
 def test_blocks_change_nothing(monkeypatch):
     rig = chain()
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
-    whole = deformation_error(rig, ours, theirs)
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
+    whole = deformation_error(rig, computed, reference)
     monkeypatch.setattr("cutcell_lab.metrics.deformation.BLOCK_NUMBERS", 20)
-    parts = deformation_error(rig, ours, theirs)
+    parts = deformation_error(rig, computed, reference)
     np.testing.assert_array_equal(whole.vertex, parts.vertex)
     np.testing.assert_allclose(whole.turn_mean, parts.turn_mean)
 
 
 def test_measuring_can_be_stopped_between_blocks(monkeypatch):
-    rig, told = chain(), []
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    rig, reports = chain(), []
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
     monkeypatch.setattr("cutcell_lab.metrics.deformation.BLOCK_NUMBERS", 20)
 
     def stop(stage, fraction):
-        told.append((stage, fraction))
+        reports.append((stage, fraction))
         if fraction > 0.2:
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        deformation_error(rig, ours, theirs, progress=stop)
-    assert told[0] == ("deformation", 0.0)
-    assert 0.2 < told[-1][1] < 0.5
+        deformation_error(rig, computed, reference, progress=stop)
+    assert reports[0] == ("deformation", 0.0)
+    assert 0.2 < reports[-1][1] < 0.5
 
 
 def test_a_bar_by_hand():
@@ -156,10 +156,10 @@ def test_a_bar_by_hand():
 
 def test_only_the_turned_joints_count():
     rig = chain()
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
-    some = deformation_error(rig, ours, theirs, joints=[2])
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
+    some = deformation_error(rig, computed, reference, joints=[2])
     assert set(some.joint) == {2}
-    assert some.mean < deformation_error(rig, ours, theirs).mean
+    assert some.mean < deformation_error(rig, computed, reference).mean
     assert not some.turn_mean[[0, 1, 3]].any()
 
 
@@ -169,41 +169,41 @@ def test_all_joints_are_turned_when_asked():
     skeleton = replace(rig.skeleton, deform=np.array([True, False, True, True]))
     rig = replace(rig, skeleton=skeleton)
     kept = np.array([1.0, 0, 1, 1])
-    ours, theirs = (random_weights(rig, seed) * kept for seed in (1, 2))
-    ours, theirs = (w / w.sum(axis=1, keepdims=True) for w in (ours, theirs))
+    computed, reference = (random_weights(rig, seed) * kept for seed in (1, 2))
+    computed, reference = (w / w.sum(axis=1, keepdims=True) for w in (computed, reference))
     for joints, which in (("deform", [0, 2, 3]), ("all", range(4))):
-        slow = slow_deformation_error(rig, ours, theirs, 30, which)
-        found = deformation_error(rig, ours, theirs, joints=joints)
-        np.testing.assert_allclose(found.vertex, slow.max(axis=0))
-        moved = np.flatnonzero(found.turn_mean.max(axis=1) > 1e-9)
+        slow = slow_deformation_error(rig, computed, reference, 30, which)
+        result = deformation_error(rig, computed, reference, joints=joints)
+        np.testing.assert_allclose(result.vertex, slow.max(axis=0))
+        moved = np.flatnonzero(result.turn_mean.max(axis=1) > 1e-9)
         assert moved.tolist() == [j for j in which if j != 0]  # the root moves all alike
-    assert deformation_error(rig, ours, theirs).mean == pytest.approx(
-        deformation_error(rig, ours, theirs, joints="deform").mean
+    assert deformation_error(rig, computed, reference).mean == pytest.approx(
+        deformation_error(rig, computed, reference, joints="deform").mean
     )
 
 
 def test_units_and_place_do_not_matter():
     rig = chain()
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
     moved = (
         TriangleMesh(rig.mesh.vertices * 40 + 5, rig.mesh.faces),
         Skeleton(rig.skeleton.joints * 40 + 5, rig.skeleton.parents),
     )
-    expected = deformation_error(rig, ours, theirs).mean
-    assert deformation_error(moved, ours, theirs).mean == pytest.approx(expected)
+    expected = deformation_error(rig, computed, reference).mean
+    assert deformation_error(moved, computed, reference).mean == pytest.approx(expected)
 
 
 def test_seams_do_not_count_twice():
     rig = chain()
-    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
     torn, corners = split(rig)
-    expected = deformation_error(rig, ours, theirs).mean
-    found = deformation_error(torn, ours[corners], theirs[corners])
-    assert found.mean == pytest.approx(expected)
-    by_vertex = deformation_error(torn, ours[corners], theirs[corners], count="vertices")
+    expected = deformation_error(rig, computed, reference).mean
+    result = deformation_error(torn, computed[corners], reference[corners])
+    assert result.mean == pytest.approx(expected)
+    by_vertex = deformation_error(torn, computed[corners], reference[corners], count="vertices")
     assert by_vertex.mean != pytest.approx(expected)
     share = vertex_shares(torn.mesh)
-    np.testing.assert_allclose(share @ (ours[corners]), ours.mean(axis=0))
+    np.testing.assert_allclose(share @ (computed[corners]), computed.mean(axis=0))
 
 
 def test_vertices_without_face_count_nothing():

@@ -88,8 +88,8 @@ def test_neighbours_are_the_nearest_along_the_surface(rig):
     for vertex in sample.vertices[:8]:
         away = networkx.single_source_dijkstra_path_length(graph, group[vertex], weight="length")
         order = [place[v] for v in sorted(away, key=away.get) if v in place and v != group[vertex]]
-        found = sample.ring[place[group[vertex]]]
-        known = found[found != place[group[vertex]]]
+        result = sample.ring[place[group[vertex]]]
+        known = result[result != place[group[vertex]]]
         np.testing.assert_array_equal(known, order[: len(known)])
 
 

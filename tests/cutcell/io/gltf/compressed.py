@@ -38,17 +38,17 @@ def draco_column(data=None, **accessors):
     data = draco_bytes() if data is None else data
     view = builder.view(data)
     counts = {"POSITION": 12, "JOINTS_0": 12, "WEIGHTS_0": 12} | accessors
-    found = {}
+    result = {}
     for name, kind, width in (("POSITION", "f4", 3), ("JOINTS_0", "u1", 4), ("WEIGHTS_0", "f4", 4)):
         item = {"componentType": CODES[kind], "count": counts[name], "type": KINDS[width]}
         if name == "POSITION":
             item |= {"min": [0, 0, 0], "max": [1, 2, 1]}
-        found[name] = builder.add("accessors", item)
+        result[name] = builder.add("accessors", item)
     indices = {"componentType": CODES["u2"], "count": FACES.size, "type": "SCALAR"}
     ids = {"POSITION": 10, "JOINTS_0": 7, "WEIGHTS_0": 9}
     builder.json["meshes"][0]["primitives"] = [
         {
-            "attributes": found,
+            "attributes": result,
             "indices": builder.add("accessors", indices),
             "extensions": {DRACO: {"bufferView": view, "attributes": ids}},
         }

@@ -86,12 +86,12 @@ class Builder:
         rows = [np.ascontiguousarray(a).view("u1").reshape(len(a), -1) for a in arrays]
         packed = np.concatenate(rows, axis=1)
         view = self.view(packed.tobytes(), byteStride=packed.shape[1], target=34962)
-        found, offset = [], 0
+        result, offset = [], 0
         for array, row in zip(arrays, rows, strict=True):
-            found.append(self.accessor(array, view=view, byteOffset=offset))
-            self._cut_copy(found[-1])
+            result.append(self.accessor(array, view=view, byteOffset=offset))
+            self._cut_copy(result[-1])
             offset += row.shape[1]
-        return found
+        return result
 
     def _cut_copy(self, accessor):
         if self.json["accessors"][accessor]["type"] == "VEC3":

@@ -109,11 +109,11 @@ class TestASkeletonForIt:
         cutcell.save(path, rig)
         again = cutcell.load(path)
         assert errors(reports(path)[0]) == {}
-        for ours, its in (
+        for computed, its in (
             (again.mesh.vertices, rig.mesh.vertices),
             (again.skeleton.joints, rig.skeleton.joints),
         ):
-            assert_allclose(ours @ again.world[:3, :3].T + again.world[:3, 3], its, atol=1e-5)
+            assert_allclose(computed @ again.world[:3, :3].T + again.world[:3, 3], its, atol=1e-5)
         assert_array_equal(again.mesh.faces, rig.mesh.faces)
         assert again.skeleton.names == ("a", "b", "c")
         assert_allclose(again.weights, rig.weights, atol=1e-6)

@@ -272,9 +272,9 @@ def test_a_bad_joint_that_is_moved_is_saved_where_it_is(loaded, tmp_path, matrix
 def test_joints_are_added_to_a_skin_whose_first_joint_is_bad(loaded, tmp_path):
     rig = loaded(lying(np.diag([466.0, 466, 466, 1])))
     rig = replace(rig, weights=np.pad(rig.weights[:, 1:3], ((0, 0), (1, 3))))
-    added = cutcell.JointCorrection(added=True, parent="far", position=(0.5, 3, 0.5))
-    change = cutcell.Corrections({"new": added})
-    changed = cutcell.corrected_rig(rig, change)
+    added = cutcell.JointEdit(added=True, parent="far", position=(0.5, 3, 0.5))
+    change = cutcell.Edits({"new": added})
+    changed = cutcell.edited_rig(rig, change)
     cutcell.save(tmp_path / "out.glb", changed.with_weights(np.eye(7)[[6] * 12]))
     world, inverse = matrices(tmp_path / "out.glb")
     assert_allclose(world[-1] @ inverse[-1], TURN_X, atol=1e-5)

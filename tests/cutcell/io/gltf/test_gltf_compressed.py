@@ -200,12 +200,12 @@ class TestMeshopt:
             builder = meshopt_of(column())
             for at in random.integers(0, len(builder.data), 4):
                 builder.data[at] ^= 1 << random.integers(8)
-            told = "rig.glb: "
+            reported = "rig.glb: "
             try:
                 assert np.isfinite(loaded(builder).mesh.vertices).all()
             except cutcell.CutcellError as error:
-                told = str(error)
-            assert told.startswith("rig.glb: ")
+                reported = str(error)
+            assert reported.startswith("rig.glb: ")
 
     def test_a_view_without_any_bytes_is_named(self, loaded):
         builder = meshopt_of(column())

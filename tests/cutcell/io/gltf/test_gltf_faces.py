@@ -109,9 +109,9 @@ def test_other_faces_than_the_documents_are_refused(tmp_path):
 
 def normals(path):
     document = read_document(path)
-    found = [p for mesh in document.items("meshes") for p in mesh["primitives"]]
+    result = [p for mesh in document.items("meshes") for p in mesh["primitives"]]
     return np.concatenate(
-        [read_accessor(document, p["attributes"]["NORMAL"], "VEC3", "it") for p in found]
+        [read_accessor(document, p["attributes"]["NORMAL"], "VEC3", "it") for p in result]
     )
 
 

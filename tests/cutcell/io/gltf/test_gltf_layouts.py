@@ -202,8 +202,8 @@ def check_saving(path, out, dropped=("JOINTS_0", "WEIGHTS_0"), most=2):
     assert_array_equal(again.mesh.vertices, rig.mesh.vertices)
     before, after = read_document(path), read_document(out)
     attributes = [p["attributes"] for m in before.items("meshes") for p in m["primitives"]]
-    gone = {found[name] for found in attributes for name in dropped if name in found}
-    kept = {v for found in attributes for k, v in found.items() if k not in dropped}
+    gone = {result[name] for result in attributes for name in dropped if name in result}
+    kept = {v for result in attributes for k, v in result.items() if k not in dropped}
     for i, accessor in enumerate(before.items("accessors")):
         if i in gone - kept:
             continue
@@ -293,8 +293,8 @@ def test_an_extension_that_names_bytes_itself(tmp_path):
     _, after = check_saving(layout.save(tmp_path / "in.gltf"), tmp_path / "out.glb")
     assert after.json["bufferViews"][2]["name"] == "joints"
     assert "extensions" not in after.json["bufferViews"][2]
-    found = after.json["bufferViews"][0]["extensions"]["ACME_thing"]
-    assert content(after, found) == b"named by an extension"
+    result = after.json["bufferViews"][0]["extensions"]["ACME_thing"]
+    assert content(after, result) == b"named by an extension"
     assert after.json["extras"] == {"buffer": 1, "byteLength": 4}
 
 

@@ -94,12 +94,12 @@ def test_several_sets_of_influences_and_joints_named_twice(loaded):
     rng = np.random.default_rng(1)
     shares = rng.random((12, 8)).astype("f4")  # not normalised: that is done on loading
     joints = np.tile(np.array([0, 1, 2, 3, 4, 5, 5, 0], "u1"), (12, 1))
-    found = builder.attributes(COLUMN, joints[:, :4], shares[:, :4])
-    found |= {
+    result = builder.attributes(COLUMN, joints[:, :4], shares[:, :4])
+    result |= {
         "JOINTS_1": builder.accessor(joints[:, 4:]),
         "WEIGHTS_1": builder.accessor(shares[:, 4:]),
     }
-    builder.node(mesh=builder.mesh(found), skin=builder.skin(nodes, binds))
+    builder.node(mesh=builder.mesh(result), skin=builder.skin(nodes, binds))
     expected = shares[:, :6].astype(float)
     expected[:, 5] += shares[:, 6]
     expected[:, 0] += shares[:, 7]
@@ -111,8 +111,8 @@ def test_rows_without_weight_stay_so_and_joints_without_weight_do_not_deform(loa
     shares = SHARES.copy()
     shares[:, 1] = 0
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    found["WEIGHTS_0"] = builder.accessor(shares)
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result["WEIGHTS_0"] = builder.accessor(shares)
     rig = loaded(builder)
     assert (rig.weights[8:] == 0).all()
     assert rig.skeleton.deform.tolist() == [True, False]
@@ -120,8 +120,8 @@ def test_rows_without_weight_stay_so_and_joints_without_weight_do_not_deform(loa
 
 def test_a_skinned_mesh_without_weights_yet(loaded):
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    del found["JOINTS_0"], found["WEIGHTS_0"]
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    del result["JOINTS_0"], result["WEIGHTS_0"]
     rig = loaded(builder)
     assert rig.weights is None
     assert rig.skeleton.deform.all()
@@ -129,7 +129,7 @@ def test_a_skinned_mesh_without_weights_yet(loaded):
 
 def test_sparse_accessors_with_and_without_a_base(loaded):
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
     wrong = COLUMN.copy()
     wrong[[3, 7]] = 99
     for name, base, right, rows in (
@@ -142,9 +142,9 @@ def test_sparse_accessors_with_and_without_a_base(loaded):
             "indices": {"bufferView": builder.view(rows.tobytes()), "componentType": 5121},
             "values": {"bufferView": builder.view(right[rows].tobytes())},
         }
-        found[name] = builder.accessor(right if base is None else base, sparse=sparse)
+        result[name] = builder.accessor(right if base is None else base, sparse=sparse)
         if base is None:
-            del builder.json["accessors"][found[name]]["bufferView"]
+            del builder.json["accessors"][result[name]]["bufferView"]
     check_column(loaded(builder))
 
 

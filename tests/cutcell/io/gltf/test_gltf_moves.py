@@ -216,8 +216,8 @@ def test_what_cannot_be_moved_is_refused(loaded, tmp_path):
 def test_joints_that_were_renamed_are_called_so(tmp_path):
     rig = cutcell.load(demo_path("robot"))
     name = rig.skeleton.names[2]
-    new = cutcell.JointCorrection(was=name, position=tuple(rig.skeleton.joints[2] + 0.01))
-    other = cutcell.corrected_rig(rig, cutcell.Corrections({"new name": new}))
+    new = cutcell.JointEdit(was=name, position=tuple(rig.skeleton.joints[2] + 0.01))
+    other = cutcell.edited_rig(rig, cutcell.Edits({"new name": new}))
     cutcell.save(tmp_path / "renamed.glb", other)
     again = cutcell.load(tmp_path / "renamed.glb")
     assert again.skeleton.names[2] == "new name"
@@ -225,7 +225,7 @@ def test_joints_that_were_renamed_are_called_so(tmp_path):
     assert_allclose(again.skeleton.joints, other.skeleton.joints, atol=1e-6)
     assert_allclose(again.weights, rig.weights, atol=2e-7)
     assert not errors(reports(tmp_path / "renamed.glb")[0])
-    gone = cutcell.corrected_rig(rig, cutcell.Corrections(removed=[name]))
+    gone = cutcell.edited_rig(rig, cutcell.Edits(removed=[name]))
     for ending in ("glb", "npz"):
         cutcell.save(tmp_path / f"gone.{ending}", gone)
         assert name not in cutcell.load(tmp_path / f"gone.{ending}").skeleton.names

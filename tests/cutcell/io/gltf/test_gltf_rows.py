@@ -48,10 +48,10 @@ def layout(kind, sets=1, interleaved=False, sparse=False, nan=False, joints="u1"
     arrays = [a[:, 4 * n : 4 * n + 4] for n in range(sets) for a in (where, share)]
     positions = builder.positions(COLUMN)
     if interleaved:
-        positions, *found = builder.interleaved(COLUMN, *arrays)
+        positions, *result = builder.interleaved(COLUMN, *arrays)
     else:
-        found = [builder.accessor(array) for array in arrays]
-    for accessor in found[1::2]:
+        result = [builder.accessor(array) for array in arrays]
+    for accessor in result[1::2]:
         if kind != "f4":
             builder.json["accessors"][accessor]["normalized"] = True
         if sparse:
@@ -62,7 +62,7 @@ def layout(kind, sets=1, interleaved=False, sparse=False, nan=False, joints="u1"
                 "indices": {"bufferView": builder.view(rows.tobytes()), "componentType": 5123},
                 "values": {"bufferView": builder.view(share[[9, 4], :4].tobytes())},
             }
-    attributes = {"POSITION": positions, **dict(zip(NAMES, found, strict=False))}
+    attributes = {"POSITION": positions, **dict(zip(NAMES, result, strict=False))}
     mesh = builder.mesh(attributes)
     root = builder.node(name="root")
     tip = builder.node(root, name="tip", translation=[0, 1, 0])
@@ -160,8 +160,8 @@ def many_joints():
 
 def test_repaired_rows_are_written_anew(tmp_path):
     rig = cutcell.load(layout("f4", nan=True).save(tmp_path / "in.glb"))
-    found = cutcell.diagnose(rig, 16)
-    repaired = found.repaired(["invalid-weights"]).rig
+    result = cutcell.diagnose(rig, 16)
+    repaired = result.repaired(["invalid-weights"]).rig
     cutcell.save(tmp_path / "out.glb", repaired.with_weights(repaired.weights))
     assert "invalid-weights" not in cutcell.diagnose(cutcell.load(tmp_path / "out.glb"), 16)
     before, after = rows_of(tmp_path / "in.glb"), rows_of(tmp_path / "out.glb")
@@ -171,7 +171,7 @@ def test_repaired_rows_are_written_anew(tmp_path):
 
 def test_rows_stay_where_a_joint_is_added(tmp_path):
     rig = cutcell.load(column().save(tmp_path / "in.glb"))
-    end = cutcell.JointCorrection(added=True, position=(0.5, 2, 0.5), parent="tip")
-    added = cutcell.corrected_rig(rig, cutcell.Corrections({"end": end}))
+    end = cutcell.JointEdit(added=True, position=(0.5, 2, 0.5), parent="tip")
+    added = cutcell.edited_rig(rig, cutcell.Edits({"end": end}))
     cutcell.save(tmp_path / "out.glb", added)
     assert rows_of(tmp_path / "out.glb") == rows_of(tmp_path / "in.glb")

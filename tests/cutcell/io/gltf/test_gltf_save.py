@@ -41,9 +41,9 @@ def without_influences(meshes):
     meshes = json.loads(json.dumps(meshes))
     for mesh in meshes:
         for primitive in mesh["primitives"]:
-            found = primitive["attributes"]
-            for name in [k for k in found if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-                del found[name]
+            result = primitive["attributes"]
+            for name in [k for k in result if k.startswith(("JOINTS_", "WEIGHTS_"))]:
+                del result[name]
     return meshes
 
 
@@ -60,23 +60,23 @@ def without_deform(skins):
 
 def referenced(document):
     """Return {where: (accessor, type)} for all accessors but the influences."""
-    found = {}
+    result = {}
     for i, mesh in enumerate(document.items("meshes")):
         for k, primitive in enumerate(mesh["primitives"]):
             uses = {**primitive["attributes"], "indices": primitive.get("indices")}
             for name, index in uses.items():
                 if index is not None and not name.startswith(("JOINTS_", "WEIGHTS_")):
-                    found[f"mesh {i} {k} {name}"] = index
+                    result[f"mesh {i} {k} {name}"] = index
     for i, skin in enumerate(document.items("skins")):
         if "inverseBindMatrices" in skin:
-            found[f"skin {i}"] = skin["inverseBindMatrices"]
+            result[f"skin {i}"] = skin["inverseBindMatrices"]
     for i, animation in enumerate(document.items("animations")):
         for k, sampler in enumerate(animation["samplers"]):
-            found[f"clip {i} {k} in"], found[f"clip {i} {k} out"] = (
+            result[f"clip {i} {k} in"], result[f"clip {i} {k} out"] = (
                 sampler["input"],
                 sampler["output"],
             )
-    return found
+    return result
 
 
 def check_nothing_else_changed(before, after):
@@ -116,9 +116,9 @@ def check_round_trip(path, out, most):
     sets = -(-most // 4)
     for part in again.source.parts:
         mesh, primitive = part.primitives[0]
-        found = again.source.document.json["meshes"][mesh]["primitives"][primitive]["attributes"]
+        result = again.source.document.json["meshes"][mesh]["primitives"][primitive]["attributes"]
         limit = min(most, len(part.joints))
-        assert sum(k.startswith("JOINTS_") for k in found) == min(sets, -(-limit // 4))
+        assert sum(k.startswith("JOINTS_") for k in result) == min(sets, -(-limit // 4))
     return again
 
 
@@ -153,25 +153,25 @@ def interleaved():
 
 def normalised_bytes():
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    found["WEIGHTS_0"] = builder.accessor(np.round(SHARES * 255).astype("u1"), normalized=True)
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result["WEIGHTS_0"] = builder.accessor(np.round(SHARES * 255).astype("u1"), normalized=True)
     return builder
 
 
 def sparse_weights():
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
     values = {"bufferView": builder.view(SHARES[:2].tobytes())}
     rows = {"bufferView": builder.view(b"\0\1"), "componentType": 5121}
     sparse = {"count": 2, "indices": rows, "values": values}
-    found["WEIGHTS_0"] = builder.accessor(SHARES, sparse=sparse)
+    result["WEIGHTS_0"] = builder.accessor(SHARES, sparse=sparse)
     return builder
 
 
 def weights_shared_with_an_attribute():
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    found["_COPY"] = found["WEIGHTS_0"]
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    result["_COPY"] = result["WEIGHTS_0"]
     return builder
 
 
@@ -197,8 +197,8 @@ def many_joints():
 
 def not_bound_yet():
     builder = column()
-    found = builder.json["meshes"][0]["primitives"][0]["attributes"]
-    del found["JOINTS_0"], found["WEIGHTS_0"]
+    result = builder.json["meshes"][0]["primitives"][0]["attributes"]
+    del result["JOINTS_0"], result["WEIGHTS_0"]
     return builder
 
 
@@ -230,8 +230,8 @@ def test_only_the_weights_change(tmp_path, make, end):
     for most in (4, 8, 2):
         paths.append(tmp_path / f"out{most}{end}")
         check_round_trip(paths[-2], paths[-1], most)
-    expected, *found = map(errors, reports(*paths))
-    assert [new - expected for new in found] == [{}] * 3
+    expected, *result = map(errors, reports(*paths))
+    assert [new - expected for new in result] == [{}] * 3
 
 
 def test_unknown_fields_survive(tmp_path):
@@ -282,8 +282,8 @@ def test_a_weight_too_small_for_float32_takes_no_slot(tmp_path):
     weights[:, :4] = 0.25
     weights[:, 4] = 1e-50
     cutcell.save(tmp_path / "out.glb", rig.with_weights(weights))
-    found = read_document(tmp_path / "out.glb").json["meshes"][0]["primitives"][0]["attributes"]
-    assert "JOINTS_1" not in found
+    result = read_document(tmp_path / "out.glb").json["meshes"][0]["primitives"][0]["attributes"]
+    assert "JOINTS_1" not in result
 
 
 def test_rows_without_weight_are_saved_as_such(tmp_path):

@@ -19,7 +19,7 @@ from tests.cutcell.io.materials.test_obj_materials import RED, SKIN, lines
 
 def naive_split(faces, count, values):
     """Return corners' numbers, made one by one: where values are new to a vertex it is a copy."""
-    known, origin, found = {}, list(range(count)), []
+    known, origin, result = {}, list(range(count)), []
     for vertex, value in zip(
         faces.ravel().tolist(), values.reshape(-1, values.shape[2]), strict=True
     ):
@@ -27,8 +27,8 @@ def naive_split(faces, count, values):
         key = tuple(value.tolist())
         if key not in mine and mine:
             origin.append(vertex)
-        found.append(mine.setdefault(key, vertex if not mine else len(origin) - 1))
-    return np.reshape(found, faces.shape), np.array(origin)
+        result.append(mine.setdefault(key, vertex if not mine else len(origin) - 1))
+    return np.reshape(result, faces.shape), np.array(origin)
 
 
 @pytest.mark.parametrize("different", [1, 2, 50])
@@ -62,9 +62,9 @@ class TestSavedAgain:
     @pytest.fixture
     def first(self, tmp_path):
         rig = load_obj(tmp_path, lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
-        found = load_again(tmp_path, rig)
-        assert len(found.mesh.vertices) > len(rig.mesh.vertices)
-        return found
+        result = load_again(tmp_path, rig)
+        assert len(result.mesh.vertices) > len(rig.mesh.vertices)
+        return result
 
     def test_other_weights(self, first, tmp_path):
         other = first.with_weights(np.eye(2)[np.arange(len(first.mesh.vertices)) % 2])

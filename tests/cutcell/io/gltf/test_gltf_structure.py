@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import cutcell
-from cutcell.editing.corrections import Corrections, JointCorrection
+from cutcell.editing import Edits, JointEdit
 from cutcell.errors import SkeletonError
 from tests.cutcell.io.gltf.gltf_builder import column, two_skins
 from tests.cutcell.io.gltf.test_gltf_clips import animate
@@ -26,27 +26,25 @@ def change(rig, seed=5):
     elsewhere = [j for j in rng.permutation(stays).tolist() if skeleton.parents[j] >= 0][:2]
     for j in elsewhere[:1]:
         free = [k for k in stays if not skeleton.subtree[j, k] and k != skeleton.parents[j]]
-        joints[names[j]] = JointCorrection(parent=names[int(rng.choice(free))])
+        joints[names[j]] = JointEdit(parent=names[int(rng.choice(free))])
     for j in elsewhere[1:]:
-        joints[names[j]] = JointCorrection(parent="")
+        joints[names[j]] = JointEdit(parent="")
     size = np.ptp(rig.mesh.bounds, axis=0).max()
     for j in rng.choice(stays, 2, replace=False).tolist():
         place = skeleton.joints[j] + 0.02 * size * rng.standard_normal(3)
-        held = joints.get(names[j], JointCorrection())
-        joints[names[j]] = JointCorrection(parent=held.parent, position=tuple(place.tolist()))
+        held = joints.get(names[j], JointEdit())
+        joints[names[j]] = JointEdit(parent=held.parent, position=tuple(place.tolist()))
     middle = rig.mesh.bounds.mean(axis=0)
     for k, above in enumerate((names[stays[-1]], "new 0", "")):
         place = middle + 0.1 * size * rng.standard_normal(3)
-        joints[f"new {k}"] = JointCorrection(
-            added=True, parent=above, position=tuple(place.tolist())
-        )
-    return Corrections(joints, removed=tuple(names[j] for j in removed))
+        joints[f"new {k}"] = JointEdit(added=True, parent=above, position=tuple(place.tolist()))
+    return Edits(joints, removed=tuple(names[j] for j in removed))
 
 
-def check_saved(path, out, corrections=None, tolerance=1e-5):
+def check_saved(path, out, edits=None, tolerance=1e-5):
     rig = cutcell.load(path)
-    corrections = change(rig) if corrections is None else corrections
-    other = cutcell.corrected_rig(rig, corrections)
+    edits = change(rig) if edits is None else edits
+    other = cutcell.edited_rig(rig, edits)
     other = other.with_weights(cutcell.bind(other, 16).weights)
     cutcell.save(out, other)
     again = cutcell.load(out)
@@ -67,8 +65,8 @@ def check_saved(path, out, corrections=None, tolerance=1e-5):
     for clip in other.clips:
         when = np.linspace(0, clip.duration, 4)
         if clip.name in clips:
-            found = clips[clip.name].sample(when)[:, order]
-            assert_allclose(found, clip.sample(when), atol=tolerance * max(size, 1))
+            result = clips[clip.name].sample(when)[:, order]
+            assert_allclose(result, clip.sample(when), atol=tolerance * max(size, 1))
     before, after = (errors(report) for report in reports(path, out))
     assert not after - before
     cutcell.save(out, again)  # it is a file like any other
@@ -89,7 +87,7 @@ def test_real_characters(rigs, tmp_path, name):
 def test_a_joint_that_only_hangs_elsewhere(demo_paths, tmp_path):
     path = demo_paths[0].with_name("robot.glb")
     names = cutcell.load(path).skeleton.names
-    elsewhere = Corrections({"hand.L": JointCorrection(parent="head")})
+    elsewhere = Edits({"hand.L": JointEdit(parent="head")})
     _, again = check_saved(path, tmp_path / "out.glb", elsewhere)
     above = again.skeleton.parents[again.skeleton.names.index("hand.L")]
     assert again.skeleton.names[above] == "head"
@@ -113,7 +111,7 @@ def test_skins_of_several_meshes_each_get_the_joints_that_they_had(tmp_path):
     rig = cutcell.load(path)
     last = rig.skeleton.names[-1]
     place = tuple((rig.skeleton.joints[-1] + 0.1).tolist())
-    added = Corrections({"end": JointCorrection(added=True, parent=last, position=place)})
+    added = Edits({"end": JointEdit(added=True, parent=last, position=place)})
     other, again = check_saved(path, tmp_path / "out.glb", added)
     tip, held = other.skeleton.names.index("end"), len(rig.skeleton.names) - 1
     assert again.allowed is not None
@@ -127,7 +125,7 @@ def test_a_motion_of_a_removed_joint_alone_goes(tmp_path):
     animate(builder, (1, "rotation", [0, 1], turned, "LINEAR"))
     path = builder.save(tmp_path / "in.glb")
     rig = cutcell.load(path)
-    removed = Corrections(removed=(rig.skeleton.names[1],))
+    removed = Edits(removed=(rig.skeleton.names[1],))
     _, again = check_saved(path, tmp_path / "out.glb", removed)
     assert again.clips == ()
 
@@ -136,6 +134,6 @@ def test_a_skin_without_bind_matrices_is_refused(tmp_path):
     builder = column()
     del builder.json["skins"][0]["inverseBindMatrices"]
     rig = cutcell.load(builder.save(tmp_path / "in.glb"))
-    other = cutcell.corrected_rig(rig, Corrections(removed=(rig.skeleton.names[1],)))
+    other = cutcell.edited_rig(rig, Edits(removed=(rig.skeleton.names[1],)))
     with pytest.raises(SkeletonError, match="has no inverse bind matrices"):
         cutcell.save(tmp_path / "out.glb", other.with_weights(cutcell.bind(other, 8).weights))

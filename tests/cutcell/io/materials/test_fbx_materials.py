@@ -39,14 +39,14 @@ def scene(**given):
 def test_an_image_inside_lies_where_each_corner_says(load, write):
     rig = load(scene(materials=[(RED, INSIDE)]), write)
     assert has_materials(rig)
-    found = read_materials(rig)
-    assert found.notes == ()
-    assert [(one.name, one.content) for one in found.images] == [('image "skin.png"', b"an image")]
-    assert found.layers == (Layer(0, color=(255, 0, 0)),)
-    assert_allclose(found.body.corners[..., :2], IN_IMAGE, atol=1e-6)
-    assert (found.body.corners[..., 2] == 0).all()
-    assert (found.body.corners[..., 3] == 0).all()
-    assert (found.body.tints == 255).all(), "the image takes the place of the colour"
+    result = read_materials(rig)
+    assert result.notes == ()
+    assert [(one.name, one.content) for one in result.images] == [('image "skin.png"', b"an image")]
+    assert result.layers == (Layer(0, color=(255, 0, 0)),)
+    assert_allclose(result.body.corners[..., :2], IN_IMAGE, atol=1e-6)
+    assert (result.body.corners[..., 2] == 0).all()
+    assert (result.body.corners[..., 3] == 0).all()
+    assert (result.body.tints == 255).all(), "the image takes the place of the colour"
 
 
 def test_each_face_has_its_material(load):
@@ -83,39 +83,39 @@ def test_an_image_is_moved_as_the_texture_says(load):
         vector("Translation", (0.25, 0.5, 0)),
         vector("Scaling", (2, 4, 1)),
     ]
-    found = read_materials(load(scene(materials=[(RED, {**INSIDE, "look": look})])))
+    result = read_materials(load(scene(materials=[(RED, {**INSIDE, "look": look})])))
     # FBX places the image over the texture coordinates: these take the inverse.
     moved = (UV - (0.25, 0.5)) / (2, 4)
     expected = np.stack([moved[..., 0], 1 - moved[..., 1]], axis=2)
-    assert_allclose(found.body.corners[..., :2], expected, atol=1e-6)
+    assert_allclose(result.body.corners[..., :2], expected, atol=1e-6)
 
 
 def test_a_damaged_image_leaves_the_colour(load):
-    found = load_textures(load(scene(materials=[(RED, INSIDE)])))
-    assert found.notes == (
+    result = load_textures(load(scene(materials=[(RED, INSIDE)])))
+    assert result.notes == (
         'image "skin.png" cannot be shown: it is no PNG, JPEG, WebP, BMP or TGA, or damaged',
     )
-    assert (found.body.tints == (255, 0, 0)).all()
-    assert (found.body.corners[..., 2] == -1).all()
+    assert (result.body.tints == (255, 0, 0)).all()
+    assert (result.body.corners[..., 2] == -1).all()
 
 
 class TestBeside:
     def test_an_image_lies_beside_by_its_name(self, load, tmp_path):
         (tmp_path / "skin.png").write_bytes(b"beside")
-        found = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
-        assert found.images[0].content == b"beside"
+        result = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
+        assert result.images[0].content == b"beside"
 
     @pytest.mark.parametrize("file", ["..\\skin.png", "../../skin.png", "/elsewhere/skin.png"])
     def test_a_name_of_another_machine_is_looked_for_in_the_folder(self, load, tmp_path, file):
         rig = load(scene(materials=[(RED, {"file": file})]))
         (tmp_path.parent / "skin.png").write_bytes(b"of somebody else")
-        found = read_materials(rig)
-        assert found.images == ()
-        assert found.notes == (
+        result = read_materials(rig)
+        assert result.images == ()
+        assert result.notes == (
             'material "paint 0" is used without what could not be read of it: image "skin.png" is '
             "not in the folder of column.fbx",
         )
-        assert (found.body.tints == (255, 0, 0)).all()
+        assert (result.body.tints == (255, 0, 0)).all()
         (tmp_path / "skin.png").write_bytes(b"beside")
         assert read_materials(rig).images[0].content == b"beside"
 
@@ -129,15 +129,15 @@ class TestBeside:
     def test_links_lead_nowhere(self, load, tmp_path):
         (tmp_path.parent / "secret.png").write_bytes(b"of somebody else")
         os.symlink(tmp_path.parent / "secret.png", tmp_path / "skin.png")
-        found = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
-        assert found.images == ()
-        assert "not in the folder" in found.notes[0]
+        result = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
+        assert result.images == ()
+        assert "not in the folder" in result.notes[0]
 
     def test_too_large_a_file_is_not_read(self, load, tmp_path):
         with (tmp_path / "skin.png").open("wb") as file:
             file.truncate(2**29)
-        found = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
-        assert "has 512 MB, more than is read" in found.notes[0]
+        result = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
+        assert "has 512 MB, more than is read" in result.notes[0]
 
 
 @pytest.mark.parametrize(
@@ -156,10 +156,10 @@ def test_faces_that_were_repaired_keep_their_colours(load):
     kept, turned = np.ones(len(FACES), bool), np.zeros(len(FACES), bool)
     kept[[2, 5]] = False
     turned[4] = True
-    found = read_materials(with_faces(rig, kept, turned))
+    result = read_materials(with_faces(rig, kept, turned))
     expected = IN_IMAGE.copy()
     expected[4] = expected[4, [0, 2, 1]]
-    assert_allclose(found.body.corners[..., :2], expected[kept], atol=1e-6)
+    assert_allclose(result.body.corners[..., :2], expected[kept], atol=1e-6)
 
 
 def test_another_mesh_has_none_of_it(load):

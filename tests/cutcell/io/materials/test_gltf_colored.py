@@ -122,8 +122,8 @@ def check_same(rig, found, order=slice(None)):
 class TestObj:
     def test_materials_images_and_coordinates(self, obj, again):
         rig = obj(lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
-        found = check_same(rig, again(rig), BY_MATERIAL)
-        assert found.names == ("red", "skin")
+        result = check_same(rig, again(rig), BY_MATERIAL)
+        assert result.names == ("red", "skin")
 
     def test_faces_of_one_material_keep_their_order(self, obj, again):
         rig = obj(lines("skin"), SKIN, skin=SKIN_PNG)
@@ -142,9 +142,9 @@ class TestObj:
     def test_what_shines_through(self, obj, again):
         mtl = f"{SKIN}map_d skin.png\n{RED}d 0.5\nnewmtl end\nmap_Kd skin.png\n"
         rig = obj(lines("skin", "red", "end"), mtl, skin=SKIN_PNG)
-        found = check_same(rig, again(rig), np.argsort(np.arange(len(FACES)) % 3, kind="stable"))
-        assert set(found.body.corners[:, 0, 3].astype(int)) == {0, BLENDED}
-        assert len(found.images) == 1
+        result = check_same(rig, again(rig), np.argsort(np.arange(len(FACES)) % 3, kind="stable"))
+        assert set(result.body.corners[:, 0, 3].astype(int)) == {0, BLENDED}
+        assert len(result.images) == 1
 
     def test_colours_of_vertices(self, obj, again):
         colors = np.random.default_rng(1).uniform(0, 1, (len(COLUMN), 3)).round(2)
@@ -153,33 +153,33 @@ class TestObj:
             for (x, y, z), (r, g, b) in zip(COLUMN, colors, strict=True)
         ]
         rig = obj("\n".join([*points, *(f"f {a} {b} {c}" for a, b, c in FACES + 1)]))
-        found = again(rig)
-        check_same(rig, found)
-        accessors = found.source.document.items("accessors")
+        result = again(rig)
+        check_same(rig, result)
+        accessors = result.source.document.items("accessors")
         assert accessors[0]["count"] == len(COLUMN), "there is no seam"
 
     def test_an_image_that_is_not_there_leaves_the_colour(self, obj, again):
         rig = obj(lines("skin"), SKIN)
-        found = check_same(rig, again(rig))
-        assert (found.body.tints == (128, 255, 255)).all()
+        result = check_same(rig, again(rig))
+        assert (result.body.tints == (128, 255, 255)).all()
         (note,) = saving_notes(Path("out.glb"), rig)
         assert 'image "skin.png" is not in the folder of column.obj' in note
 
     @pytest.mark.parametrize("kind", ["TGA", "BMP", "WEBP"])
     def test_an_image_of_another_format_becomes_png(self, obj, again, kind):
         rig = obj(lines("skin"), SKIN, skin=picture(kind, lossless=True))
-        found = read_materials(again(rig))
+        result = read_materials(again(rig))
         assert saving_notes(Path("out.glb"), rig) == ()
-        with Image.open(BytesIO(found.images[0].content)) as image:
+        with Image.open(BytesIO(result.images[0].content)) as image:
             assert image.format == "PNG"
             assert image.getpixel((0, 0)) == (255, 0, 0)
-        assert_array_equal(found.body.corners, read_materials(rig).body.corners)
+        assert_array_equal(result.body.corners, read_materials(rig).body.corners)
 
     def test_a_damaged_image_leaves_the_colour_and_is_told(self, obj, again):
         rig = obj(lines("skin"), SKIN, skin=b"an image")
-        found = read_materials(again(rig))
-        assert found.images == ()
-        assert (found.body.tints == (128, 255, 255)).all()
+        result = read_materials(again(rig))
+        assert result.images == ()
+        assert (result.body.tints == (128, 255, 255)).all()
         (note,) = saving_notes(Path("out.glb"), rig)
         assert note == (
             'image "skin.png" is not saved, and its material has its colour alone: it is no PNG, '
@@ -222,8 +222,8 @@ class TestFbx:
     def test_materials_images_and_coordinates(self, fbx, again):
         looks = [([vector("DiffuseColor", (1, 0, 0))], None), ([], INSIDE)]
         rig = fbx(polygons=HALVES, materials=looks)
-        found = check_same(rig, again(rig), BY_MATERIAL)
-        assert found.names == ("paint 0", "paint 1")
+        result = check_same(rig, again(rig), BY_MATERIAL)
+        assert result.names == ("paint 0", "paint 1")
 
     def test_a_gltf_beside_its_buffer_has_them_too(self, fbx, again):
         rig = fbx(materials=[([], INSIDE)])
@@ -251,14 +251,14 @@ class TestFbx:
         ]
         (tmp_path / "column.fbx").write_bytes(binary(scene))
         rig = cutcell.load(tmp_path / "column.fbx")
-        found = again(rig)
-        check_same(rig, found)
-        (before,), (after,) = rig.attachments, found.attachments
+        result = again(rig)
+        check_same(rig, result)
+        (before,), (after,) = rig.attachments, result.attachments
         corners = [one.mesh.vertices[one.mesh.faces] for one in (before, after)]
         assert_allclose(corners[1], corners[0], atol=1e-6)
-        (before,), (after,) = read_materials(rig).attachments, read_materials(found).attachments
+        (before,), (after,) = read_materials(rig).attachments, read_materials(result).attachments
         assert_array_equal(after.corners, before.corners)
-        materials = found.source.document.items("materials")
+        materials = result.source.document.items("materials")
         assert [one["name"] for one in materials] == ["paint 0", *([] if linked else ["plain"])]
 
     def test_without_a_skin(self, again, tmp_path):
@@ -285,8 +285,8 @@ def test_a_mesh_without_a_skin_that_becomes_a_new_file_keeps_them(tmp_path, agai
     del builder.json["skins"], node["skin"]
     node["scale"] = [-1, 1, 1]
     rig = bound(cutcell.load(builder.save(tmp_path / "bare.glb")))
-    found = check_same(rig, again(rig))
-    assert found.layers[0].cutoff == 0.25
+    result = check_same(rig, again(rig))
+    assert result.layers[0].cutoff == 0.25
 
 
 def test_linear_colours_are_those_of_pictures():

@@ -58,10 +58,10 @@ def test_a_factor_colours_all_corners(loaded):
     primitive(builder)["material"] = builder.add("materials", factor(RED))
     rig = loaded(builder)
     assert has_materials(rig)
-    found = read_materials(rig)
-    assert found.layers == found.images == found.notes == ()
-    assert_array_equal(found.body.tints, np.broadcast_to([255, 0, 0], (len(FACES), 3, 3)))
-    assert (found.body.corners[..., 2] == -1).all()
+    result = read_materials(rig)
+    assert result.layers == result.images == result.notes == ()
+    assert_array_equal(result.body.tints, np.broadcast_to([255, 0, 0], (len(FACES), 3, 3)))
+    assert (result.body.corners[..., 2] == -1).all()
 
 
 @pytest.mark.parametrize("material", [None, factor((0.8, 0.8, 0.8, 1)), {}])
@@ -100,24 +100,24 @@ def test_each_corner_lies_where_its_vertex_does_in_the_image(loaded):
     sampler = {"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}
     rig = loaded(with_image(column(), sampler=sampler, pbr={"baseColorFactor": [0.5, 1, 1, 1]}))
     assert has_materials(rig)
-    found = read_materials(rig)
-    assert [(one.name, one.content) for one in found.images] == [('image "skin"', b"an image")]
-    assert found.layers == (Layer(0, nearest=True),)
-    assert_allclose(found.body.corners[..., :2], UV[FACES])
-    assert (found.body.corners[..., 2] == 0).all()
-    assert (found.body.corners[..., 3] == 3 * CLAMP + MIRROR).all()
-    assert (found.body.tints == (srgb(0.5), 255, 255)).all()
+    result = read_materials(rig)
+    assert [(one.name, one.content) for one in result.images] == [('image "skin"', b"an image")]
+    assert result.layers == (Layer(0, nearest=True),)
+    assert_allclose(result.body.corners[..., :2], UV[FACES])
+    assert (result.body.corners[..., 2] == 0).all()
+    assert (result.body.corners[..., 3] == 3 * CLAMP + MIRROR).all()
+    assert (result.body.tints == (srgb(0.5), 255, 255)).all()
 
 
 def test_an_image_is_moved_turned_and_scaled_as_the_extension_says(loaded):
     said = {"offset": [0.25, -1], "rotation": 0.4, "scale": [2, 3]}
     info = {"extensions": {"KHR_texture_transform": said}}
-    found = read_materials(loaded(with_image(column(), info=info)))
+    result = read_materials(loaded(with_image(column(), info=info)))
     c, s = np.cos(0.4), np.sin(0.4)
     move, scale = np.array([[1, 0, 0.25], [0, 1, -1], [0, 0, 1]]), np.diag([2, 3, 1])
     turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])  # as the extension's text has it
     expected = np.column_stack([UV, np.ones(12)]) @ (move @ turn @ scale).T
-    assert_allclose(found.body.corners[..., :2], expected[FACES][..., :2], atol=1e-5)
+    assert_allclose(result.body.corners[..., :2], expected[FACES][..., :2], atol=1e-5)
 
 
 def test_the_extensions_own_example_shows_the_lower_left_quarter(loaded):
@@ -150,8 +150,8 @@ def test_alpha_of_vertices_counts_where_it_is_blended(loaded):
     part = primitive(builder)
     part["attributes"]["COLOR_0"] = builder.accessor(colors, normalized=True)
     part["material"] = builder.add("materials", {**factor((1, 1, 1, 0.5)), "alphaMode": "BLEND"})
-    found = read_materials(loaded(builder)).body.opacity
-    assert_allclose(found, (colors[:, 3] / 2)[FACES], atol=1)
+    result = read_materials(loaded(builder)).body.opacity
+    assert_allclose(result, (colors[:, 3] / 2)[FACES], atol=1)
 
 
 def test_the_same_image_is_listed_once_and_each_use_of_it(loaded):
@@ -160,10 +160,10 @@ def test_the_same_image_is_listed_once_and_each_use_of_it(loaded):
     cut = builder.add("materials", {"pbrMetallicRoughness": pbr, "alphaMode": "MASK"})
     second_part(builder, FACES[:3], material=cut)
     second_part(builder, FACES[3:5])
-    found = read_materials(loaded(builder))
-    assert len(found.images) == 1
-    assert found.layers == (Layer(0), Layer(0, cutoff=0.5))
-    used = found.body.corners[:, 0, 2]
+    result = read_materials(loaded(builder))
+    assert len(result.images) == 1
+    assert result.layers == (Layer(0), Layer(0, cutoff=0.5))
+    used = result.body.corners[:, 0, 2]
     assert_array_equal(used, [0] * len(FACES) + [1] * 3 + [0] * 2)
 
 
@@ -173,9 +173,9 @@ def test_older_materials_are_read_by_their_extension(loaded):
     said = {"diffuseFactor": [0, 1, 0, 1], "diffuseTexture": info}
     name = "KHR_materials_pbrSpecularGlossiness"
     builder.json["materials"][0]["extensions"] = {name: said}
-    found = read_materials(loaded(builder))
-    assert (found.body.tints == (0, 255, 0)).all()
-    assert (found.body.corners[..., 2] == 0).all()
+    result = read_materials(loaded(builder))
+    assert (result.body.tints == (0, 255, 0)).all()
+    assert (result.body.corners[..., 2] == 0).all()
 
 
 def test_what_hangs_on_a_joint_is_coloured_too_also_mirrored(loaded):
@@ -190,8 +190,8 @@ def test_what_hangs_on_a_joint_is_coloured_too_also_mirrored(loaded):
     rig = loaded(builder)
     faces = rig.attachments[0].mesh.faces
     assert_array_equal(faces, FACES[:, ::-1])
-    (found,) = read_materials(rig).attachments
-    assert_array_equal(found.tints, srgb(colors[faces][..., :3] / 255 * (1, 0, 0)))
+    (result,) = read_materials(rig).attachments
+    assert_array_equal(result.tints, srgb(colors[faces][..., :3] / 255 * (1, 0, 0)))
 
 
 def test_mended_faces_keep_their_materials(loaded):
@@ -201,11 +201,11 @@ def test_mended_faces_keep_their_materials(loaded):
     kept, turned = np.ones(len(rig.mesh.faces), bool), np.zeros(len(rig.mesh.faces), bool)
     kept[[0, 4]], turned[[2, 17]] = False, True
     mended = with_faces(rig, kept, turned)
-    found = read_materials(mended).body
-    textured = found.corners[:, 0, 2] == 0
+    result = read_materials(mended).body
+    textured = result.corners[:, 0, 2] == 0
     assert textured.sum() == len(FACES) - 2
-    assert_allclose(found.corners[textured][..., :2], UV[mended.mesh.faces[textured]])
-    assert (found.tints[~textured] == (0, 0, srgb(0.5))).all()
+    assert_allclose(result.corners[textured][..., :2], UV[mended.mesh.faces[textured]])
+    assert (result.tints[~textured] == (0, 0, srgb(0.5))).all()
 
 
 def test_joints_that_were_moved_change_no_material(loaded):
@@ -254,18 +254,18 @@ BROKEN = {
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_what_is_broken_is_told_and_leaves_the_factor(loaded, name):
-    found = read_materials(loaded(broken(BROKEN[name])))
-    (note,) = found.notes
+    result = read_materials(loaded(broken(BROKEN[name])))
+    (note,) = result.notes
     assert note.startswith('material "cloth" is used without')
-    assert (found.body.tints == (255, 0, 0)).all()
-    assert (found.body.corners[..., 2] == -1).all()
+    assert (result.body.tints == (255, 0, 0)).all()
+    assert (result.body.corners[..., 2] == -1).all()
 
 
 @pytest.mark.parametrize("wrong", [{"baseColorFactor": [1]}, {"baseColorFactor": "red"}])
 def test_a_broken_factor_is_white(loaded, wrong):
-    found = read_materials(loaded(with_image(column(), pbr=wrong)))
-    assert len(found.notes) == 1
-    assert (found.body.tints == 255).all()
+    result = read_materials(loaded(with_image(column(), pbr=wrong)))
+    assert len(result.notes) == 1
+    assert (result.body.tints == 255).all()
 
 
 def test_what_did_not_come_from_gltf_has_none(loaded):
@@ -308,16 +308,16 @@ def test_no_odd_field_is_an_error(loaded):
 
     sound = whole().json
     kinds = ("materials", "textures", "images", "samplers")
-    found = [path for kind in kinds for path in [(kind,), *paths(sound[kind], (kind,))]]
+    result = [path for kind in kinds for path in [(kind,), *paths(sound[kind], (kind,))]]
     part = ("meshes", 0, "primitives", 0)
-    found += [
+    result += [
         (*part, "material"),
         *((*part, "attributes", f"{n}_0") for n in ("COLOR", "TEXCOORD")),
     ]
-    assert len(found) > 25
+    assert len(result) > 25
     rig = loaded(whole())
     document = rig.source.document
-    for path in found:
+    for path in result:
         *above, last = path
         owner = document.json
         for key in above:
@@ -348,10 +348,10 @@ class TestWithoutASkin:
         rig = loaded(bare)
         assert len(rig.skeleton.joints) == 0
         assert has_materials(rig)
-        found = read_materials(rig)
+        result = read_materials(rig)
         expected = np.concatenate([UV[FACES], UV[FACES[:, ::-1]]])
-        assert_allclose(found.body.corners[..., :2], expected)
-        assert len(found.layers) == 1
+        assert_allclose(result.body.corners[..., :2], expected)
+        assert len(result.layers) == 1
 
     def test_a_skeleton_and_a_repair_keep_them(self, loaded, bare):
         rig = loaded(bare)
@@ -364,7 +364,7 @@ class TestWithoutASkin:
         repaired = with_faces(rig, kept, turned)
         expected = np.concatenate([UV[FACES], UV[FACES[:, ::-1]]])
         expected[3] = expected[3, [0, 2, 1]]
-        found = read_materials(repaired)
-        assert_allclose(found.body.corners[..., :2], expected[kept])
+        result = read_materials(repaired)
+        assert_allclose(result.body.corners[..., :2], expected[kept])
         whole = with_faces(repaired, np.ones(kept.sum(), bool), np.zeros(kept.sum(), bool))
-        assert_allclose(read_materials(whole).body.corners, found.body.corners)
+        assert_allclose(read_materials(whole).body.corners, result.body.corners)

@@ -22,13 +22,13 @@ SKIN = "newmtl skin\nKd 0.5 1 1\nmap_Kd skin.png\n"
 
 def lines(*names, library="mtllib column.mtl"):
     """Return the column as OBJ text, its faces dealt to materials in turn."""
-    found = [library, *(f"v {x} {y} {z}" for x, y, z in COLUMN)]
-    found += [f"vt {u} {v}" for u, v in UV]
+    result = [library, *(f"v {x} {y} {z}" for x, y, z in COLUMN)]
+    result += [f"vt {u} {v}" for u, v in UV]
     for k, face in enumerate(FACES + 1):
         if names:
-            found.append(f"usemtl {names[k % len(names)]}")
-        found.append("f " + " ".join(f"{a}/{3 * k + c + 1}" for c, a in enumerate(face)))
-    return "\n".join(found) + "\n"
+            result.append(f"usemtl {names[k % len(names)]}")
+        result.append("f " + " ".join(f"{a}/{3 * k + c + 1}" for c, a in enumerate(face)))
+    return "\n".join(result) + "\n"
 
 
 @pytest.fixture
@@ -47,15 +47,15 @@ def load(tmp_path):
 def test_faces_have_their_materials(load):
     rig = load(lines("red", "skin"), RED + SKIN, skin=b"an image")
     assert has_materials(rig)
-    found = read_materials(rig)
-    assert found.notes == ()
-    assert [(one.name, one.content) for one in found.images] == [('image "skin.png"', b"an image")]
-    assert found.layers == (Layer(0),)
-    assert (found.body.tints[::2] == (255, 0, 0)).all()
-    assert (found.body.corners[::2, :, 2] == -1).all()
-    assert (found.body.tints[1::2] == (128, 255, 255)).all()
-    assert (found.body.corners[1::2, :, 2] == 0).all()
-    assert_allclose(found.body.corners[1::2, :, :2], IN_IMAGE[1::2], atol=1e-6)
+    result = read_materials(rig)
+    assert result.notes == ()
+    assert [(one.name, one.content) for one in result.images] == [('image "skin.png"', b"an image")]
+    assert result.layers == (Layer(0),)
+    assert (result.body.tints[::2] == (255, 0, 0)).all()
+    assert (result.body.corners[::2, :, 2] == -1).all()
+    assert (result.body.tints[1::2] == (128, 255, 255)).all()
+    assert (result.body.corners[1::2, :, 2] == 0).all()
+    assert_allclose(result.body.corners[1::2, :, :2], IN_IMAGE[1::2], atol=1e-6)
 
 
 def test_polygons_are_cut_as_the_mesh_is(load):
@@ -63,11 +63,11 @@ def test_polygons_are_cut_as_the_mesh_is(load):
     text += (
         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl skin\nf 1/1 2/2 3/3 4/4\nf 1 2 5\nf -3/-2 5 1/9\n"
     )
-    found = read_materials(load(text, SKIN, skin=b"an image")).body.corners[..., :2]
-    assert_array_equal(found[0], [[0, 1], [1, 1], [1, 0]])
-    assert_array_equal(found[1], [[0, 1], [1, 0], [0, 0]])
+    result = read_materials(load(text, SKIN, skin=b"an image")).body.corners[..., :2]
+    assert_array_equal(result[0], [[0, 1], [1, 1], [1, 0]])
+    assert_array_equal(result[1], [[0, 1], [1, 0], [0, 0]])
     # A corner without one lies at 0 0.
-    assert_array_equal(found[3], [[1, 0], [0, 1], [0, 1]])
+    assert_array_equal(result[3], [[1, 0], [0, 1], [0, 1]])
 
 
 def test_a_template_a_bind_and_a_repair_keep_them(load):
@@ -134,13 +134,13 @@ class TestMtl:
     )
     def test_an_image_may_have_options(self, load, tmp_path, said, file):
         (tmp_path / file).write_bytes(b"an image")
-        found = read_materials(load(lines("skin"), f"newmtl skin\n{said}\n"))
-        assert found.notes == ()
-        assert found.images[0].content == b"an image"
+        result = read_materials(load(lines("skin"), f"newmtl skin\n{said}\n"))
+        assert result.notes == ()
+        assert result.images[0].content == b"an image"
 
     def test_alpha_counts_where_an_image_says_so(self, load):
-        found = read_materials(load(lines("skin"), SKIN + "map_d skin.png\n", skin=b"an image"))
-        assert found.layers == (Layer(0, blended=True),)
+        result = read_materials(load(lines("skin"), SKIN + "map_d skin.png\n", skin=b"an image"))
+        assert result.layers == (Layer(0, blended=True),)
 
     @pytest.mark.parametrize(
         ("said", "opacity"), [("d 0.5", 128), ("Tr 0.75", 64), ("d 0", 255), ("d x", 255)]
@@ -156,8 +156,8 @@ class TestMtl:
 
     @pytest.mark.parametrize("said", ["Kd", "Kd red", "Kd nan 1 1", "Kd spectral file.rfl 1"])
     def test_a_colour_that_cannot_be_read_is_white(self, load, said):
-        found = read_materials(load(lines("red"), f"newmtl red\n{said}\n"))
-        assert (found.body.tints == 255).all()
+        result = read_materials(load(lines("red"), f"newmtl red\n{said}\n"))
+        assert (result.body.tints == 255).all()
 
     def test_several_libraries_and_names_with_spaces(self, load, tmp_path):
         (tmp_path / "a b.mtl").write_text("newmtl my skin\nKd 0 0 1\n")
@@ -183,17 +183,17 @@ class TestWhatIsMissing:
         assert note == 'no .mtl file tells of the materials that faces have ("green")'
 
     def test_an_image_leaves_the_colour(self, load):
-        found = read_materials(load(lines("skin"), SKIN))
-        assert found.images == ()
-        assert 'material "skin"' in found.notes[0]
-        assert 'image "skin.png" is not in the folder of column.obj' in found.notes[0]
-        assert (found.body.tints == (128, 255, 255)).all()
-        assert (found.body.corners[..., 2] == -1).all()
+        result = read_materials(load(lines("skin"), SKIN))
+        assert result.images == ()
+        assert 'material "skin"' in result.notes[0]
+        assert 'image "skin.png" is not in the folder of column.obj' in result.notes[0]
+        assert (result.body.tints == (128, 255, 255)).all()
+        assert (result.body.corners[..., 2] == -1).all()
 
     def test_texture_coordinates(self, load):
         text = "\n".join(line for line in lines("skin").splitlines() if line[:2] != "vt")
-        found = read_materials(load(text, SKIN, skin=b"an image"))
-        assert "no texture coordinates" in found.notes[0]
+        result = read_materials(load(text, SKIN, skin=b"an image"))
+        assert "no texture coordinates" in result.notes[0]
 
     @pytest.mark.parametrize("name", ["../column.mtl", "/etc/column.mtl", "\0", "..", "x" * 5000])
     def test_no_library_is_read_from_elsewhere(self, load, tmp_path, name):
@@ -213,8 +213,8 @@ class TestWhatIsMissing:
         text = (
             lines("skin").replace("vt 0.", "vt nan", 4).replace("/1 ", "/x ").replace("/2 ", "/0 ")
         )
-        found = read_materials(load(text, SKIN, skin=b"an image"))
-        assert np.isfinite(found.body.corners).all()
+        result = read_materials(load(text, SKIN, skin=b"an image"))
+        assert np.isfinite(result.body.corners).all()
 
     def test_an_image_that_is_no_file(self, load, tmp_path):
         (tmp_path / "skin.png").mkdir()
@@ -224,8 +224,8 @@ class TestWhatIsMissing:
 class TestStoredCorners:
     def test_faces_with_the_same_corners_are_told_apart_by_their_order(self):
         stored = np.array([[0, 1, 2], [2, 1, 3], [0, 2, 1], [0, 1, 2]])
-        found = stored_corners(stored, stored[[0, 1, 2]][:, [0, 2, 1]])
-        assert_array_equal(found, [[0, 2, 1], [3, 5, 4], [6, 8, 7]])
+        result = stored_corners(stored, stored[[0, 1, 2]][:, [0, 2, 1]])
+        assert_array_equal(result, [[0, 2, 1], [3, 5, 4], [6, 8, 7]])
 
     def test_other_faces_are_none(self):
         stored = np.array([[0, 1, 2], [2, 1, 3]])
@@ -235,6 +235,6 @@ class TestStoredCorners:
 
     def test_most_faces_of_a_large_mesh(self):
         stored = np.random.default_rng(0).integers(0, 50_000, (100_000, 3))
-        found = stored_corners(stored, np.delete(stored, 7, axis=0))
-        assert (found[:7, 0] == 3 * np.arange(7)).all()
-        assert found[-1, 0] == 3 * 99_999
+        result = stored_corners(stored, np.delete(stored, 7, axis=0))
+        assert (result[:7, 0] == 3 * np.arange(7)).all()
+        assert result[-1, 0] == 3 * 99_999

@@ -90,11 +90,11 @@ def test_faces_have_materials_by_mesh_and_subset(painted):
 def test_an_image_beside(painted, tmp_path):
     (tmp_path / "skin.png").write_bytes(b"an image")
     painted.bind(painted.material("skin", file="./skin.png"))
-    found = read_materials(painted.load())
-    assert found.notes == ()
-    assert [(one.name, one.content) for one in found.images] == [('image "skin.png"', b"an image")]
-    assert found.layers == (Layer(0, color=(255, 255, 255)),)
-    assert_allclose(found.body.corners[..., :2], IN_IMAGE, atol=1e-6)
+    result = read_materials(painted.load())
+    assert result.notes == ()
+    assert [(one.name, one.content) for one in result.images] == [('image "skin.png"', b"an image")]
+    assert result.layers == (Layer(0, color=(255, 255, 255)),)
+    assert_allclose(result.body.corners[..., :2], IN_IMAGE, atol=1e-6)
 
 
 def test_an_image_in_a_package(painted, tmp_path):
@@ -104,17 +104,17 @@ def test_an_image_in_a_package(painted, tmp_path):
     package = tmp_path / "packed" / "column.usdz"
     package.parent.mkdir()
     assert UsdUtils.CreateNewUsdzPackage(str(painted.path), str(package))
-    found = read_materials(cutcell.load(package))
-    assert [one.content for one in found.images] == [b"an image"]
+    result = read_materials(cutcell.load(package))
+    assert [one.content for one in result.images] == [b"an image"]
 
 
 @pytest.mark.parametrize("file", ["../secret.png", "/etc/hostname", "missing.png"])
 def test_no_image_is_read_from_elsewhere(painted, tmp_path, file):
     (tmp_path.parent / "secret.png").write_bytes(b"of somebody else")
     painted.bind(painted.material("skin", file=file))
-    found = read_materials(painted.load())
-    assert found.images == ()
-    assert "is not in the folder of column.usda" in found.notes[0]
+    result = read_materials(painted.load())
+    assert result.images == ()
+    assert "is not in the folder of column.usda" in result.notes[0]
 
 
 def test_colours_to_be_displayed(painted):
@@ -137,5 +137,5 @@ def test_what_is_saved_has_them_too(painted, tmp_path):
     cutcell.save(tmp_path / "out.glb", rig)
     some = np.isin(np.arange(len(FACES)), [1, 3])
     order = np.argsort(some, kind="stable")
-    found = check_same(rig, cutcell.load(tmp_path / "out.glb"), order)
-    assert found.names == ("skin", "blue")
+    result = check_same(rig, cutcell.load(tmp_path / "out.glb"), order)
+    assert result.names == ("skin", "blue")

@@ -22,8 +22,8 @@ def rig(deform=(True, True, True, False, False)):
 
 
 def chosen(*args, **kwargs):
-    found = choose_deform(rig(), *args, **kwargs).skeleton
-    return {name for name, deform in zip(found.names, found.deform, strict=True) if deform}
+    result = choose_deform(rig(), *args, **kwargs).skeleton
+    return {name for name, deform in zip(result.names, result.deform, strict=True) if deform}
 
 
 def test_names_and_patterns():
@@ -48,6 +48,8 @@ def test_the_file_can_be_forgotten():
     assert fresh.weights is None
     assert not fresh.skeleton.deform[NAMES.index("Hand_IK")]
     assert fresh.skeleton.deform[NAMES.index("Arm*")]
+    renamed = choose_deform(replace(rig(), name="other"), fresh=True)
+    assert np.array_equal(renamed.skeleton.deform, fresh.skeleton.deform)
     assert choose_deform(rig()).weights is not None
     bare = replace(rig(), skeleton=Skeleton([], []), weights=None)
     assert len(choose_deform(bare, fresh=True).skeleton.joints) == 0

@@ -14,9 +14,13 @@ CHAIN = [[0.05, 0.1, 0.1], [0.35, 0.1, 0.1], [0.65, 0.1, 0.1]]
 
 
 def found(joints, parents, names=(), mesh=BAR):
-    told = deform_joints(mesh, Skeleton(joints, parents, names))
+    reports = deform_joints(mesh, Skeleton(joints, parents, names))
     return dict(
-        zip(names or range(len(joints)), zip(told.deform, told.reason, strict=True), strict=True)
+        zip(
+            names or range(len(joints)),
+            zip(reports.deform, reports.reason, strict=True),
+            strict=True,
+        )
     )
 
 
@@ -30,34 +34,35 @@ def test_joints_in_the_body_are_bones():
 
 def test_what_is_called_an_end_is_one_unless_bones_hang_on_it():
     joints = [*CHAIN, [0.8, 0.1, 0.1], [0.9, 0.1, 0.1]]
-    told = found(joints, [-1, 0, 1, 2, 3], ["hip", "spine", "neck", "head_end", "head_end_end"])
-    assert set(ruled_out(told)) == {"head_end", "head_end_end"}
-    told = found(joints, [-1, 0, 1, 2, 3], ["hip", "spine", "low_end", "neck", "head"])
-    assert ruled_out(told) == {}
+    reports = found(joints, [-1, 0, 1, 2, 3], ["hip", "spine", "neck", "head_end", "head_end_end"])
+    assert set(ruled_out(reports)) == {"head_end", "head_end_end"}
+    reports = found(joints, [-1, 0, 1, 2, 3], ["hip", "spine", "low_end", "neck", "head"])
+    assert ruled_out(reports) == {}
 
 
 def test_a_last_joint_with_no_skin_beyond_it_marks_an_end():
-    assert ruled_out(found([*CHAIN, [0.98, 0.1, 0.1]], [-1, 0, 1, 2])) == {
+    assert ruled_out(found([*CHAIN, [1.01, 0.1, 0.1]], [-1, 0, 1, 2])) == {
         3: "end marker: no skin beyond it"
     }
+    assert ruled_out(found([*CHAIN, [0.99, 0.1, 0.1]], [-1, 0, 1, 2])) == {}
 
 
 def test_what_is_away_from_the_body_moves_nothing():
-    told = found([*CHAIN, [0.5, 0.5, 0.1]], [-1, 0, 1, 1])
-    assert ruled_out(told) == {3: "outside of the body"}
+    reports = found([*CHAIN, [0.5, 0.5, 0.1]], [-1, 0, 1, 1])
+    assert ruled_out(reports) == {3: "outside of the body"}
 
 
 def test_a_joint_outside_whose_bone_runs_into_the_body_is_a_bone():
-    joints = [[-0.1, 0.1, 0.1], [0.35, 0.1, 0.1], [0.65, 0.1, 0.1]]
+    joints = [[-0.06, 0.1, 0.1], [0.35, 0.1, 0.1], [0.65, 0.1, 0.1]]
     assert ruled_out(found(joints, [-1, 0, 1])) == {}
 
 
 def test_a_root_on_the_floor_is_no_bone():
     joints = [[0.5, -0.4, 0.1], *CHAIN]
-    assert ruled_out(found(joints, [-1, 0, 1, 2])) == {0: "outside of the body"}
+    assert ruled_out(found(joints, [-1, 0, 1, 2])) == {0: "root beside the body"}
     close = [[0.5, -0.03, 0.1], *CHAIN]
-    told = found(close, [-1, 0, 1, 2], ["Root", "a", "b", "c"])
-    assert ruled_out(told) == {"Root": "root beside the body"}
+    reports = found(close, [-1, 0, 1, 2], ["Root", "a", "b", "c"])
+    assert ruled_out(reports) == {"Root": "root beside the body"}
 
 
 def test_a_root_is_kept_where_it_moves_all_that_the_others_do_not():
@@ -71,8 +76,8 @@ def test_a_control_may_be_the_only_joint_that_moves_a_foot():
     assert ruled_out(found(joints, [-1, 0, 1, -1], names)) == {}
     names = ["hip", "thigh", "foot", "foot.IK"]
     joints[3] = [0.655, 0.1, 0.1]
-    told = found(joints, [-1, 0, 1, -1], names)
-    assert ruled_out(told) == {"foot.IK": 'control at the place of "foot"'}
+    reports = found(joints, [-1, 0, 1, -1], names)
+    assert ruled_out(reports) == {"foot.IK": 'control at the place of "foot"'}
 
 
 @pytest.mark.parametrize(
@@ -87,35 +92,35 @@ def test_a_control_may_be_the_only_joint_that_moves_a_foot():
 )
 def test_controls_of_mmd_are_recognized_in_all_spellings(names):
     joints = [[0.01, 0.01, 0.01], [0.2, 0.1, 0.1], *CHAIN, CHAIN[2], [0.8, 0.1, 0.1]]
-    told = found(joints, [-1, 0, 1, 2, 3, 0, 4], names)
-    assert set(ruled_out(told)) == {names[0], names[1], names[5], names[6]}
+    reports = found(joints, [-1, 0, 1, 2, 3, 0, 4], names)
+    assert set(ruled_out(reports)) == {names[0], names[1], names[5], names[6]}
 
 
 def test_a_centre_elsewhere_is_a_bone():
-    told = found(CHAIN, [-1, 0, 1], ["center", "neck", "tail_tip"])
-    assert ruled_out(told) == {}
+    reports = found(CHAIN, [-1, 0, 1], ["center", "neck", "tail_tip"])
+    assert ruled_out(reports) == {}
 
 
 def test_sockets_hold_things_of_their_own():
-    told = found([*CHAIN, [0.7, 0.1, 0.1]], [-1, 0, 1, 2], ["a", "b", "hand", "handslot"])
-    assert ruled_out(told) == {"handslot": "holds things, by its name"}
+    reports = found([*CHAIN, [0.7, 0.1, 0.1]], [-1, 0, 1, 2], ["a", "b", "hand", "handslot"])
+    assert ruled_out(reports) == {"handslot": "holds things, by its name"}
 
 
 def test_place_does_not_count_where_most_joints_are_away_from_the_mesh():
     hat = TriangleMesh(BAR.vertices + np.array([0, 3, 0]), BAR.faces)
     joints = [[0.1, y, 0.1] for y in (1.0, 2.0, 3.1)]
-    told = found(joints, [-1, 0, 1], ["hip", "spine_ctrl", "head"], hat)
-    assert set(ruled_out(told)) == {"spine_ctrl"}
+    reports = found(joints, [-1, 0, 1], ["hip", "spine_ctrl", "head"], hat)
+    assert set(ruled_out(reports)) == {"spine_ctrl"}
 
 
 def test_a_rig_of_nothing_but_controls_is_moved_by_them():
-    told = found(CHAIN, [-1, 0, 1], ["a_ctrl", "b_ctrl", "c_ctrl"])
-    assert ruled_out(told) == {}
+    reports = found(CHAIN, [-1, 0, 1], ["a_ctrl", "b_ctrl", "c_ctrl"])
+    assert ruled_out(reports) == {}
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 def test_units_and_the_order_of_joints_do_not_matter(scale):
-    joints = np.array([[0.5, -0.4, 0.1], *CHAIN, [0.98, 0.1, 0.1]])
+    joints = np.array([[0.5, -0.4, 0.1], *CHAIN, [1.01, 0.1, 0.1]])
     parents = np.array([-1, 0, 1, 2, 3])
     expected = np.array([False, True, True, True, False])
     mesh = TriangleMesh(BAR.vertices * scale, BAR.faces)
@@ -123,8 +128,8 @@ def test_units_and_the_order_of_joints_do_not_matter(scale):
     order = np.array([3, 0, 4, 2, 1])
     place = np.argsort(order)
     above = np.where(parents >= 0, place[parents], -1)[order]
-    told = deform_joints(mesh, Skeleton(joints[order] * scale, above))
-    assert_array_equal(told.deform, expected[order])
+    reports = deform_joints(mesh, Skeleton(joints[order] * scale, above))
+    assert_array_equal(reports.deform, expected[order])
 
 
 @pytest.mark.parametrize("name", ["ball", "torus", "tube", "ball_with_holes", "box"])
@@ -151,12 +156,113 @@ def test_without_joints_there_is_nothing_to_tell():
 
 
 def test_where_bones_are_marked_as_deforming_no_others_are():
-    names = ["root", "DEF-hip", "rig:DEF-spine", "ORG-neck"]
-    told = found([[0.5, -0.4, 0.1], *CHAIN], [-1, 0, 1, 2], names)
-    assert set(ruled_out(told)) == {"root", "ORG-neck"}
+    names = ["root", "DEF-hip", "rig:DEF-spine", "DEF-neck", "ORG-head", "hat", "torso"]
+    joints = [[0.5, -0.4, 0.1], *CHAIN, CHAIN[2], CHAIN[2], CHAIN[0]]
+    reports = found(joints, [-1, 0, 1, 2, 3, 3, 0], names)
+    assert set(ruled_out(reports)) == {"root", "ORG-head", "torso"}
 
 
 def test_one_of_two_chains_for_kinematics_at_one_place_moves_skin():
     names = ["hip", "thigh", "shin", "shin_FK"]
-    told = found([*CHAIN, CHAIN[2]], [-1, 0, 1, 1], names)
-    assert set(ruled_out(told)) == {"shin_FK"}
+    reports = found([*CHAIN, CHAIN[2]], [-1, 0, 1, 1], names)
+    assert set(ruled_out(reports)) == {"shin_FK"}
+
+
+def test_parts_that_are_inside_out_keep_their_joints():
+    """As two hands in one place, one mirrored by a negative scale."""
+    other = TriangleMesh(BAR.vertices * [1, -1, 1] + [0, 0.205, 0], BAR.faces)
+    faces = [BAR.faces, other.faces + len(BAR.vertices)]
+    both = TriangleMesh(np.concatenate([BAR.vertices, other.vertices]), np.concatenate(faces))
+    assert Body(both).inside(Body(both).to_unit(np.array(CHAIN))).all()
+    assert ruled_out(found(CHAIN, [-1, 0, 1], mesh=both)) == {}
+
+
+def test_joints_that_were_never_placed_are_no_bones():
+    joints = [[0.5, -0.02, 0.1], *CHAIN, [0.5, -0.02, 0.1], [0.8, 0.1, 0.1], [0.5, -0.02, 0.1]]
+    reports = found(joints, [-1, 0, 1, 2, 3, 4, 0], ["root", "a", "b", "c", "d", "e", "f"])
+    unplaced = 'not placed: at "root"'
+    assert ruled_out(reports) == {"root": "root beside the body", "d": unplaced, "f": unplaced}
+
+
+def test_a_joint_at_the_place_of_its_children_stays_unless_named_root():
+    joints = [CHAIN[0], *CHAIN]
+    for name, deform in (("Hips", True), ("Root", False)):
+        reports = deform_joints(BAR, Skeleton(joints, [-1, 0, 1, 2], [name, "a", "b", "c"]))
+        assert reports.deform.tolist() == [deform, True, True, True]
+        assert reports.doubtful.tolist() == [deform, False, False, False]
+        assert reports.reason[0] == 'root at the place of "a"'
+
+
+def test_of_two_chains_the_one_that_goes_further_moves_the_skin():
+    joints = [*CHAIN, [0.9, 0.1, 0.1], *CHAIN]
+    reports = found(joints, [-1, 0, 1, 2, 0, 4, 5], [f"Bone.{k}" for k in range(7)])
+    assert set(ruled_out(reports)) == {"Bone.5", "Bone.6"}
+    # Alone at the end of a limb, at the place of the foot: what moves it by inverse kinematics.
+    joints = [*CHAIN, [0.9, 0.1, 0.1], [0.9, 0.1, 0.1]]
+    reports = found(joints, [-1, 0, 1, 2, -1], [f"Bone.{k}" for k in range(5)])
+    assert ruled_out(reports) == {"Bone.4": 'at the place of "Bone.3"'}
+
+
+def test_partners_and_siblings_at_one_place_are_no_doubles():
+    joints = [*CHAIN, CHAIN[1], CHAIN[1]]
+    assert ruled_out(found(joints, [-1, 0, 1, 0, 2], ["hip", "a", "b", "wing.L", "wing.R"])) == {}
+
+
+@pytest.mark.parametrize("legs", [2, 3])
+def test_a_root_in_the_body_is_a_bone_where_three_chains_start(legs):
+    joints, parents = [[0.3, 0.1, 0.1]], [-1]
+    for k in range(legs):
+        joints += [[0.4, 0.05 + 0.05 * k, 0.1], [0.8, 0.05 + 0.05 * k, 0.1]]
+        parents += [0, len(joints) - 2]
+    reports = deform_joints(
+        BAR, Skeleton(joints, parents, ["root", *(f"leg{k}" for k in range(2 * legs))])
+    )
+    assert reports.deform.tolist() == [legs == 3] + [True] * 2 * legs
+    assert reports.doubtful.tolist() == [legs == 3] + [False] * 2 * legs
+
+
+def test_a_root_in_the_middle_of_a_fish_is_a_bone():
+    joints = [[0.5, 0.1, 0.1], [0.3, 0.1, 0.1], [0.1, 0.1, 0.1], [0.7, 0.1, 0.1]]
+    reports = deform_joints(BAR, Skeleton(joints, [-1, 0, 1, 0], ["root", "tail", "fin", "head"]))
+    assert reports.deform.all()
+    assert reports.doubtful.tolist() == [True, False, False, False]
+
+
+def test_a_long_way_from_a_root_outside_is_no_bone():
+    joints = [[-0.05, -0.03, 0.1], [0.5, 0.1, 0.1], [0.6, 0.1, 0.1], [0.7, 0.1, 0.1]]
+    assert ruled_out(found(joints, [-1, 0, 1, 2])) == {0: "root beside the body"}
+
+
+def test_a_limb_that_the_mesh_has_not_is_doubtful():
+    joints = [*CHAIN, [0.5, 0.1, 0.2], [0.5, 0.3, 0.2], [0.5, 0.6, 0.2]]
+    reports = deform_joints(BAR, Skeleton(joints, [-1, 0, 1, 1, 3, 4]))
+    assert reports.deform.tolist() == [True] * 4 + [False] * 2
+    assert reports.doubtful.tolist() == [False] * 3 + [True] + [False] * 2
+
+
+def test_a_control_of_a_foot_that_has_bones_is_none():
+    joints = [*CHAIN, [0.75, 0.1, 0.1], [0.8, 0.12, 0.1]]
+    names = ["hip", "thigh", "shin", "foot.L", "FootIK.L"]
+    reports = found(joints, [-1, 0, 1, 2, -1], names)
+    assert ruled_out(reports) == {"FootIK.L": 'control of "foot.L"'}
+
+
+def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
+    names = ["Root", "hip", "thigh.L", "foot.L", "FootIK.L", "foot.L.001", "hat", "hat_end", "far"]
+    joints = [[0.5, -0.4, 0.1], *CHAIN, [0.7, 0.12, 0.1], CHAIN[2], [0.2, 0.15, 0.1]]
+    joints = np.array([*joints, [0.25, 0.15, 0.1], [0.5, 0.5, 0.1]])
+    parents = np.array([-1, 0, 1, 2, 0, 0, 1, 6, 1])
+    plain = deform_joints(BAR, Skeleton(joints, parents, names))
+    assert plain.deform.tolist() == [False] + [True] * 3 + [False] * 2 + [True] + [False] * 2
+    for seed in range(5):
+        random = np.random.default_rng(seed)
+        order, points = random.permutation(9), random.permutation(len(BAR.vertices))
+        place = np.argsort(points)
+        faces = random.permutation(place[BAR.faces][:, [0, 2, 1]])
+        mirror = np.array([-3.0, 3.0, 3.0])
+        mesh = TriangleMesh(BAR.vertices[points] * mirror, faces)
+        above = np.where(parents >= 0, np.argsort(order)[parents], -1)[order]
+        swapped = [names[j].replace(".L", ".R") for j in order]
+        reports = deform_joints(mesh, Skeleton(joints[order] * mirror, above, swapped))
+        assert_array_equal(reports.deform, plain.deform[order])
+        assert_array_equal(reports.doubtful, plain.doubtful[order])

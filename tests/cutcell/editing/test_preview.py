@@ -5,9 +5,9 @@ import pytest
 import trimesh
 
 import cutcell
-from cutcell import Corrections, Rig, Skeleton, TriangleMesh
-from cutcell_app.jobs.moved_distances import MovedDistances
-from cutcell_app.jobs.preview import Preview
+from cutcell import Rig, Skeleton, TriangleMesh
+from cutcell.editing.preview import Preview
+from cutcell.geodesics.moved import MovedDistances
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def test_a_preview_is_near_what_is_bound(robot, options):
     method = cutcell.method.method_of(options.get("method", "animation"), 24)
     method = method.with_options(**{k: v for k, v in options.items() if k != "method"})
     binding = cutcell.bind(robot, method=method)
-    preview = Preview(robot, binding, method, Corrections())
+    preview = Preview(robot, binding, method)
     np.testing.assert_allclose(preview.bind(robot).weights, binding.weights, rtol=0, atol=1e-9)
     for by in ([0.01, 0.02, 0], [0.03, -0.05, 0.02]):
         other = moved(robot, "forearm.L", by)
@@ -60,6 +60,6 @@ def test_a_part_keeps_the_only_joint_that_reaches_it():
     joints = [[0, 0, 0], [3, 0, 0]]
     rig = Rig(TriangleMesh(mesh.vertices, mesh.faces), Skeleton(joints, [-1, -1]))
     binding = cutcell.bind(rig, 24)
-    preview = Preview(rig, binding, cutcell.ANIMATION.with_options(resolution=24), Corrections())
+    preview = Preview(rig, binding, cutcell.ANIMATION.with_options(resolution=24))
     weights = preview.bind(rig.with_joints([[0, 0, 0], [0.2, 0, 0]])).weights
     np.testing.assert_allclose(weights[len(box.vertices) :], np.tile([0.0, 1.0], (98, 1)))

@@ -5,7 +5,7 @@ import pytest
 
 from cutcell import ParameterError, TriangleMesh, build_graph, winding_number
 from cutcell.graph import INTERIOR
-from cutcell_viewers.ray_slice import slice_rays
+from cutcell.graph.sections import slice_rays
 from tests import meshes
 
 
@@ -25,9 +25,9 @@ def middles_in(graph, axis, normal, index):
 def test_kept_segments_are_the_graphs_interior_edges(shape, axis, normal):
     mesh = TriangleMesh(*shape())
     graph = build_graph(mesh, 12, connectivity=6)
-    found = slice_rays(mesh, 12, axis=axis, normal=normal, index=5)
-    long = np.linalg.norm(found.high - found.low, axis=1) > 1e-12
-    kept = ((found.low + found.high) / 2)[found.inside & long]
+    result = slice_rays(mesh, 12, axis=axis, normal=normal, index=5)
+    long = np.linalg.norm(result.high - result.low, axis=1) > 1e-12
+    kept = ((result.low + result.high) / 2)[result.inside & long]
     expected = middles_in(graph, axis, normal, 5)
     assert len(expected) > 0
     order = lambda points: points[np.lexsort(points.round(9).T)]  # noqa: E731
@@ -36,24 +36,24 @@ def test_kept_segments_are_the_graphs_interior_edges(shape, axis, normal):
 
 def test_segments_hang_together_and_tell_their_winding_number():
     mesh = TriangleMesh(*meshes.ball_with_holes())
-    found = slice_rays(mesh, 10, axis=2, normal=0, index=4, winding_threshold=0.3)
-    assert (found.high[:, 2] > found.low[:, 2]).all()
-    np.testing.assert_allclose(found.low[:, 0], 0.45)
-    middle = found.lattice.to_file((found.low + found.high) / 2)
-    np.testing.assert_allclose(found.winding, winding_number(mesh, middle), atol=1e-12)
-    np.testing.assert_array_equal(found.inside, found.winding >= 0.3)
-    assert 0 < found.inside.sum() < len(found.inside)
+    result = slice_rays(mesh, 10, axis=2, normal=0, index=4, winding_threshold=0.3)
+    assert (result.high[:, 2] > result.low[:, 2]).all()
+    np.testing.assert_allclose(result.low[:, 0], 0.45)
+    middle = result.lattice.to_file((result.low + result.high) / 2)
+    np.testing.assert_allclose(result.winding, winding_number(mesh, middle), atol=1e-12)
+    np.testing.assert_array_equal(result.inside, result.winding >= 0.3)
+    assert 0 < result.inside.sum() < len(result.inside)
 
 
 def test_on_a_closed_mesh_each_ray_enters_as_often_as_it_leaves():
     mesh = TriangleMesh(*meshes.torus())
-    found = slice_rays(mesh, 16, axis=0, normal=2, index=8)
-    assert found.sign.sum() == 0
-    np.testing.assert_allclose(found.winding, found.winding.round(), atol=1e-9)
-    corners = found.lattice.to_unit(mesh.vertices)[mesh.faces[found.triangle]]
+    result = slice_rays(mesh, 16, axis=0, normal=2, index=8)
+    assert result.sign.sum() == 0
+    np.testing.assert_allclose(result.winding, result.winding.round(), atol=1e-9)
+    corners = result.lattice.to_unit(mesh.vertices)[mesh.faces[result.triangle]]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    np.testing.assert_array_equal(np.sign(normal[:, 0]), found.sign)
-    offset = ((found.crossing - corners[:, 0]) * normal).sum(axis=1)
+    np.testing.assert_array_equal(np.sign(normal[:, 0]), result.sign)
+    offset = ((result.crossing - corners[:, 0]) * normal).sum(axis=1)
     np.testing.assert_allclose(offset, 0, atol=1e-12)
 
 

@@ -1,0 +1,44 @@
+"""What the scripts know of the widget library's DOM is still there."""
+
+import pytest
+
+from cutcell_app.widgets.modules import ADDRESS
+from tests.app.browser import Visit
+
+pytestmark = pytest.mark.slow
+
+MISSING = """async ([address, names]) => {
+  const {PARTS} = await import(new URL(address, document.baseURI).href)
+  const has = (root, selector) => root.querySelector(selector)
+    || [...root.querySelectorAll("*")]
+      .some((one) => one.shadowRoot && has(one.shadowRoot, selector))
+  return names.filter((name) => !has(document, PARTS[name])).map((name) => [name, PARTS[name]])
+}"""
+EVERYWHERE = ("field", "adornment", "number", "checkbox", "select", "resizer", "title")
+IN_MENU = ("list", "search", "item", "chosen")
+NARROW = ("sheet", "layer")
+
+
+def check(visit, names):
+    missing = visit.page.evaluate(MISSING, [f"{ADDRESS}/mui.js", names])
+    sentences = [f"panel-material-ui has no {name} as {part}: see mui.js" for name, part in missing]
+    assert not sentences, "\n".join(sentences)
+
+
+def test_parts_of_the_widget_library_are_where_scripts_look(browser, url, visit):
+    visit.panel("Graph")
+    check(visit, EVERYWHERE)
+    visit.bone.click()
+    visit.page.get_by_role("menu").wait_for()
+    check(visit, IN_MENU)
+    visit.page.keyboard.press("Escape")
+    visit.page.get_by_role("menu").wait_for(state="hidden")
+
+
+def test_parts_of_the_sheet_are_where_scripts_look(browser, url):
+    narrow = Visit(browser, url + "/?rig=robot", viewport={"width": 420, "height": 800})
+    narrow.wait_until_bound()
+    narrow.button("Open drawer").click()
+    narrow.page.locator(".MuiDrawer-paper").wait_for()
+    check(narrow, NARROW)
+    narrow.close()

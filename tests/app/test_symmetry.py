@@ -1,0 +1,70 @@
+"""The map of symmetry as colours on the panel Weights, without a browser."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cutcell import Skeleton
+from cutcell.diagnosis.asymmetry import asymmetry, mirror_image
+from cutcell_app.document import loading
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.symmetry.controls import about
+from cutcell_app.features.weights.scene import painted_colors
+from tests.app.loop import settled
+from tests.app.small import small_rig
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture
+def mapped(session, loop):
+    """Let a session show the symmetry of the small figure."""
+    session.state.param.update(resolution=16, panel="weights", weights_shown="symmetry")
+    loading.show_rig(session, small_rig())
+    loop.run_until(lambda: session.state.asymmetry is not None)
+    settled(session, loop)
+    return session
+
+
+def test_the_map_is_that_of_the_core(mapped):
+    state = mapped.state
+    image = mirror_image(state.rig)
+    np.testing.assert_allclose(
+        state.asymmetry.values, asymmetry(state.binding.weights, image), atol=1e-12
+    )
+    description = resolve(state)
+    assert description.legend.title == "Difference to the mirror image"
+    assert about(state).startswith("Part of each vertex's weight")
+    assert painted_colors(state, np.arange(3), state.binding.weights[:3]) == {}
+
+
+def test_weights_of_the_file_have_a_map_of_their_own(mapped, loop):
+    state = mapped.state
+    weights = np.tile(np.eye(len(state.rig.skeleton.names))[3], (len(state.rig.mesh.vertices), 1))
+    loading.show_rig(mapped, small_rig().with_weights(weights))
+    settled(mapped, loop)
+    state.weights_of = "file"
+    settled(mapped, loop)
+    assert np.nanmin(state.asymmetry.values) == 1
+
+
+def test_joints_without_a_partner_are_listed(session, loop):
+    rig = small_rig()
+    names = [name.replace("hand.L", "hook") for name in rig.skeleton.names]
+    joints = rig.skeleton.joints.copy()
+    joints[names.index("hook")] += [0, 0.3, 0]
+    skeleton = Skeleton(joints, rig.skeleton.parents, names)
+    session.state.param.update(resolution=16, panel="weights", weights_shown="symmetry")
+    loading.show_rig(session, replace(rig, skeleton=skeleton, clips=()))
+    loop.run_until(lambda: session.state.mirror_image is not None)
+    assert "Joints without a partner: hook, hand.R." in about(session.state)
+
+
+def test_a_character_that_is_not_mirrored_says_so(session, loop):
+    session.state.param.update(resolution=16, panel="weights", weights_shown="symmetry")
+    loading.show_rig(session, arm_rig())
+    loop.run_until(lambda: session.state.mirror_image is not None)
+    settled(session, loop)
+    assert "not mirrored" in about(session.state)
+    assert session.state.asymmetry is None
+    assert "Difference" not in resolve(session.state).legend.title
