@@ -2,9 +2,12 @@
 
 import sys
 from pathlib import Path
+from zipfile import ZipFile
 
 DOCS = Path(__file__).resolve().parent
 sys.path[:0] = [str(DOCS), str(DOCS.parent)]
+
+import one_file_pages  # noqa: E402
 
 import cutcell  # noqa: E402
 
@@ -36,8 +39,8 @@ templates_path = ["_templates"]
 numpydoc_show_class_members = False
 
 sphinx_gallery_conf = {
-    "examples_dirs": ["gallery", "tutorials", "exercises"],
-    "gallery_dirs": ["auto_gallery", "auto_tutorials", "auto_exercises"],
+    "examples_dirs": ["gallery", "tutorials"],
+    "gallery_dirs": ["auto_gallery", "auto_tutorials"],
     "filename_pattern": "",
     "image_scrapers": ("gallery_pictures", "matplotlib"),
     "download_all_examples": False,
@@ -57,10 +60,18 @@ html_theme_options = {
 }
 html_show_sphinx = False
 html_copy_source = False
+html_extra_path = [one_file_pages.PAGES.name]
 copybutton_prompt_text = r">>> |\$ "
 copybutton_prompt_is_regexp = True
 
 CHECKOUT = "https://github.com/cutcell/cutcell/blob/main/"
+
+
+TEACHING = DOCS / "teaching"
+with ZipFile(TEACHING / "exercises.zip", "w") as archive:
+    for part in ("*.py", "*.npz", "*_*/*stub.py", "*_*/reference.png"):
+        for path in sorted((TEACHING / "exercises").glob(part)):
+            archive.write(path, path.relative_to(TEACHING))
 
 
 def setup(app):
@@ -71,3 +82,4 @@ def setup(app):
             source[0] = source[0].replace("](../", f"]({CHECKOUT}")
 
     app.connect("source-read", outside)
+    app.connect("config-inited", lambda *_: one_file_pages.main(), 100)  # before paths are checked

@@ -28,7 +28,7 @@ from cutcell_viewers.camera import Camera, framing  # noqa: E402
 from cutcell_viewers.character import body  # noqa: E402
 from cutcell_viewers.description import Description  # noqa: E402
 from cutcell_viewers.distance_scene import distance_scene  # noqa: E402
-from cutcell_viewers.gif import palette_of  # noqa: E402
+from cutcell_viewers.encoders import palette_of  # noqa: E402
 from cutcell_viewers.graph_scene import cut_at, graph_scene  # noqa: E402
 from cutcell_viewers.palette import DARK, LIGHT  # noqa: E402
 from cutcell_viewers.pose_scene import pose_scene  # noqa: E402
@@ -144,7 +144,7 @@ def page() -> None:
         panels(visit)
         comparisons(visit)
         check(visit)
-        tour(visit)
+        lesson(visit)
         visit.close()
         browser.close()
 
@@ -196,9 +196,10 @@ def check(visit: Visit) -> None:
     take(visit, "check")
 
 
-def tour(visit: Visit) -> None:
+def lesson(visit: Visit) -> None:
     """Take a picture of the step that shows why straight distance does not do."""
-    open_address(visit, "?step=3")
+    open_address(visit, "?step=1&answer=0.5")
+    visit.page.wait_for_function("__cutcell.renderer.views.length === 2")
     take(visit, "learn")
 
 

@@ -7,7 +7,7 @@ Mesh edges in blue, interior pieces in orange, surface edges in green, cut open 
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

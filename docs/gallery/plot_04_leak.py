@@ -7,7 +7,7 @@ The hand hangs beside the hip. Weights from straight distances let the trousers 
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

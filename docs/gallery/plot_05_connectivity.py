@@ -7,7 +7,7 @@ Along the axes a path goes round corners. At any angle it runs straight, as long
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

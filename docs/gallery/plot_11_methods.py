@@ -7,7 +7,7 @@ The weights of one bone by cutcell, bone heat and straight distances.
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

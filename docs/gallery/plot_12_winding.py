@@ -7,7 +7,7 @@ About 1 inside, 0 outside, and in between near a hole.
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped_cape"))

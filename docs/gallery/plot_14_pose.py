@@ -7,7 +7,7 @@ The arm turns by 60 degrees, and the skin follows by linear blend skinning.
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

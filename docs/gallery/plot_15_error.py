@@ -7,7 +7,7 @@ The same pose with the weights of the file and with computed ones: colours show 
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

@@ -7,7 +7,7 @@ Sources are the nodes of the graph nearest to sample points on the bone. Each st
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))

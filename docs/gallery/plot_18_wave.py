@@ -1,13 +1,13 @@
 """
 The shortest-path search step by step
-===================================
+=====================================
 
 All points up to a part of the greatest distance are coloured.
 """
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("rabbit"))

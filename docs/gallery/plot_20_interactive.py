@@ -7,7 +7,7 @@ Weights, distances, motion and graph of a character in one file, which needs no 
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.standalone.page import interactive_page
+from cutcell_app.headless.interactive import interactive_page
 from cutcell_assets import demo_path
 from cutcell_viewers.weights_scene import weights_scene
 

@@ -10,7 +10,7 @@ import cutcell
 import cutcell_lab
 import cutcell_viewers
 from cutcell.graph import INTERIOR
-from cutcell_app.render import Choices, describe
+from cutcell_app.headless import Choices, describe
 from cutcell_assets import demo_path
 
 # %%

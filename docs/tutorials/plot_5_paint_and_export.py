@@ -2,8 +2,8 @@
 Paint and export
 ================
 
-Corrections change computed weights where you know better: a stroke of the brush, a part that follows one joint, or a
-joint that does not deform. They can be stored and applied again.
+Edits change weights where you know better: a stroke of the brush, a part that follows one joint, or a joint that does
+not deform. They can be stored and applied again.
 """
 
 import numpy as np
@@ -32,12 +32,14 @@ for weights in (binding.weights, painted):
 picture = cutcell_viewers.show(weights_scene(rig, painted, head))
 
 # %%
-# Corrections describe decisions about joints and parts, apart from any weights. This one takes a joint out of the
-# binding, and its skin goes to the nearest others.
+# Edits describe decisions about joints and layers of weights. This one takes a joint out of the binding, and its skin
+# goes to the nearest others. A layer then makes the collar follow the head, half and half with what is computed.
 
-corrections = cutcell.Corrections(joints={"neck": cutcell.JointCorrection(deform=False)})
-corrected = cutcell.bind(rig, corrections=corrections)
-print("weight of the neck:", corrected.weights[:, neck].sum())
+around = np.flatnonzero((painted != binding.weights).any(axis=1))
+layer = cutcell.Layer(cutcell.Filled({"head": 1.0}), cutcell.Mask(vertices=around), opacity=0.5)
+edits = cutcell.Edits(joints={"neck": cutcell.JointEdit(deform=False)}, layers=[layer])
+edited = cutcell.bind(rig, edits=edits)
+print("weight of the neck:", edited.weights[:, neck].sum())
 
 # %%
 # Saved with the character, the weights are ready for any program that reads glTF.
