@@ -120,20 +120,18 @@ function explained(bone, first) {
 // What a person gives the vertex in place of what is computed; it is scaled to sum to one.
 function overruling(model, facts) {
   const give = (weights) => model.send_msg({type: "overrule", weights})
-  const fields = facts.offered.map(({joint, name, weight}) => {
+  const labels = facts.offered.map(({joint, name, short, color, weight}) => {
     const input = element("input", {
-      type: "number", min: 0, max: 1, step: 0.05, required: true,
+      type: "number", name: joint, min: 0, max: 1, step: 0.05, required: true,
       defaultValue: String(Number(weight.toFixed(3))), aria: {label: `Weight of ${name}`},
     })
-    return [joint, input]
+    return element("label", {title: name}, dot(color), nameElement(short ?? name), input)
   })
-  const labels = facts.offered.map(({name, short, color}, i) =>
-    element("label", {title: name}, dot(color), nameElement(short ?? name), fields[i][1]))
   const submit = (e) => {
     e.preventDefault()
-    const weights = fields.map(([joint, input]) => [joint, input.valueAsNumber])
-    for (const [, input] of fields) { input.defaultValue = input.value }
-    give(weights)
+    const inputs = numberBoxes(e.currentTarget)
+    for (const input of inputs) { input.defaultValue = input.value }
+    give(inputs.map((input) => [Number(input.name), input.valueAsNumber]))
   }
   const buttons = element("div", {className: "buttons"}, button({type: "submit"}, "Override"))
   if (facts.overruled) { buttons.append(button({on: {click: () => give(null)}}, "Reset")) }
@@ -142,11 +140,46 @@ function overruling(model, facts) {
     ...labels, buttons)
 }
 
-// Text typed into a card and not yet sent, by field.
-function typedNumbers(card) {
-  const inputs = [...card?.querySelectorAll("input") ?? []]
-  const edited = inputs.filter((input) => input.value !== input.defaultValue)
-  return new Map(edited.map((input) => [input.getAttribute("aria-label"), input.value]))
+/** @param {HTMLElement} form */
+const numberBoxes = (form) => [...form.querySelectorAll("input")]
+
+// Change a form to another one. Boxes stay where they are: one that is built again loses its caret.
+function renewForm(form, other) {
+  const old = new Map(numberBoxes(form).map((input) => [input.name, input]))
+  form.firstChild.replaceWith(other.firstChild)
+  form.lastChild.replaceWith(other.lastChild)
+  for (const input of numberBoxes(other)) {
+    const box = old.get(input.name)
+    old.delete(input.name)
+    if (!box) { form.lastChild.before(input.parentElement); continue }
+    if (box === focusIn(form)) { continue }
+    if (box.value === box.defaultValue) { box.value = input.value }
+    box.defaultValue = input.value
+  }
+  for (const box of old.values()) { box.parentElement.remove() }
+}
+
+// Change a card to another one of the same vertex; it stays where it was read.
+function renewCard(old, other) {
+  const top = old.scrollTop
+  const nameOf = (one) => one?.getAttribute("aria-label") ?? one?.className
+  const focused = nameOf(focusIn(old))
+  const [form, next] = [old, other].map((one) => one.querySelector(".overrule"))
+  if (form && next) {
+    renewForm(form, next)
+    const parts = [...other.childNodes]
+    const place = parts.indexOf(next)
+    while (old.firstChild !== form) { old.firstChild.remove() }
+    while (old.lastChild !== form) { old.lastChild.remove() }
+    form.before(...parts.slice(0, place))
+    form.after(...parts.slice(place + 1))
+  } else {
+    old.replaceChildren(...other.childNodes)
+  }
+  old.scrollTop = top
+  if (!focused || old.contains(focusIn(old))) { return }
+  const again = [...old.querySelectorAll("button")].find((one) => nameOf(one) === focused)
+  again?.focus({preventScroll: true})
 }
 
 function explanation(model, facts) {
@@ -220,19 +253,9 @@ export function render({model}) {
   const root = element("div")
   const show = () => {
     const old = root.querySelector(".vertex-card")
-    const [label, top] = [old?.getAttribute("aria-label"), old?.scrollTop ?? 0]
-    const typed = typedNumbers(old)
-    const focused = focusIn(old)?.getAttribute("aria-label")
-    root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
-    // The same vertex with other numbers stays where it was read.
-    const now = root.querySelector(".vertex-card")
-    if (!now || now.getAttribute("aria-label") !== label) { return }
-    now.scrollTop = top
-    for (const input of now.querySelectorAll("input")) {
-      const name = input.getAttribute("aria-label")
-      input.value = typed.get(name) ?? input.value
-      if (name === focused) { input.focus({preventScroll: true}) }
-    }
+    const other = model.facts && card(model, model.facts)
+    if (old && other && old.ariaLabel === other.ariaLabel) { renewCard(old, other); return }
+    root.replaceChildren(styled(), ...other ? [other] : [])
   }
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
