@@ -70,7 +70,7 @@ def test_who_waits_is_told_so_and_can_leave(sessions, loop):
     assert all(COMPARING.take(job, 1) for job in others)
     try:
         session.state.param.update(panel="compare", methods=["now", "euclidean"])
-        loop.run_until(lambda: session.state.queued)
+        loop.run_until(lambda: ("compared", "now") in session.state.queued)
         assert note(session, "now") == "Waiting for other visitors"
         session.state.panel = "weights"
         assert not session.state.queued, "who left waits no more"
