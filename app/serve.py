@@ -29,6 +29,7 @@ from .server.frames import check_origins
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
+from .server.writes import leave_none_behind
 from .shell.page import page
 from .widgets.modules import STATIC, head
 
@@ -142,6 +143,7 @@ def begin(
 
     Further arguments are those of `panel.serve`.
     """
+    leave_none_behind()
     server = pn.serve(
         {"/": lambda: page(path, opened, actors, lesson)},
         port=port,

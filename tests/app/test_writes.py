@@ -1,0 +1,62 @@
+"""No message to the browser stays on the server."""
+
+import asyncio
+from types import SimpleNamespace
+
+import pytest
+from bokeh.document import Document
+from panel.io import document
+
+from cutcell_app.server.writes import leave_none_behind
+
+PRIVATE = ("_dispatch_msgs", "_WRITE_MSGS", "_WRITE_BLOCK", "extra_socket_handlers")
+
+
+class Socket:
+    """A browser's; a write to it ends when the test says so."""
+
+    def __init__(self):
+        self.messages, self.writes = [], []
+
+
+class Connection:
+    protocol = SimpleNamespace(create=lambda kind, events: events[0])
+
+    def __init__(self):
+        self._socket = Socket()
+
+
+def write(connection, msg):
+    socket = connection._socket
+    socket.messages.append(msg)
+    socket.writes.append(asyncio.get_running_loop().create_future())
+    return socket.writes[-1:]
+
+
+@pytest.fixture
+def connection(monkeypatch):
+    missing = [name for name in PRIVATE if not hasattr(document, name)]
+    assert not missing, f"panel.io.document has no {missing}: see server/writes.py"
+    monkeypatch.setattr(document, "_dispatch_msgs", document._dispatch_msgs)  # as it is afterwards
+    monkeypatch.setitem(document.extra_socket_handlers, Socket, write)
+    return Connection()
+
+
+def test_a_message_that_comes_when_a_write_ends_is_written(connection):
+    leave_none_behind()
+    socket, doc = connection._socket, Document()
+
+    async def page():
+        document.schedule_write_events(doc, [connection], ["first"])
+        await asyncio.sleep(0.01)
+        assert socket.messages == ["first"]
+        socket.writes[0].set_result(None)
+        document.schedule_write_events(doc, [connection], ["second"])
+        await asyncio.sleep(0.01)
+        assert socket.messages == ["first", "second"]
+        socket.writes[1].set_result(None)
+        await asyncio.sleep(0.01)
+
+    asyncio.run(page())
+    assert doc not in document._WRITE_MSGS
+    assert doc not in document._WRITE_BLOCK, "later ones are written at once"
