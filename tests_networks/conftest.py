@@ -1,9 +1,13 @@
-"""One thread, so that results are the same each time; a character to learn from."""
+"""One thread of the processor, so that results are the same each time; characters to learn from."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+os.environ["CUDA_VISIBLE_DEVICES"] = ""
+
 import torch
 
 import cutcell
