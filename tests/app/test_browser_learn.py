@@ -12,6 +12,7 @@ from tests.app.test_browser_accessibility import faults
 pytestmark = pytest.mark.slow
 
 LESSON = built_in()
+SHOWN = "?step={}&resolution=16"
 CARD_PART = """([card, canvas]) => {
   const [a, b] = [card, canvas].map((one) => one.getBoundingClientRect())
   return a.width * a.height / (b.width * b.height)
@@ -52,7 +53,7 @@ def act(visit, expected):
 
 
 def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
-    visit = Visit(browser, url + "?step=1&resolution=16", viewport={"width": 1440, "height": 900})
+    visit = Visit(browser, url + SHOWN.format(1), viewport={"width": 1440, "height": 900})
     page = visit.page
     visit.wait_until_bound()
     expect(card(visit)).to_contain_text(LESSON[0].question)
@@ -94,8 +95,37 @@ def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
     visit.close()
 
 
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("width", "height", "theme"),
+    [(820, 1180, "dark"), (390, 844, "light"), (844, 390, "dark")],
+)
+def test_each_step_has_room_and_no_fault(browser, url, width, height, theme):
+    size = {"viewport": {"width": width, "height": height}, "color_scheme": theme}
+    visit = Visit(browser, url + SHOWN.format(1), has_touch=True, is_mobile=True, **size)
+    visit.wait_until_bound()
+    reports = []
+    for number, one in enumerate(LESSON, 1):
+        visit.go(SHOWN.format(number))
+        step(visit, number)
+        reports += [f"{number}: {fault}" for fault in faults(visit)]
+        way = one.answer.expected if one.answer.kind == "choice" else "Show me"
+        card(visit).get_by_role("button", name=way, exact=True).tap()
+        answered(visit)
+        expect(card(visit)).to_contain_text(one.sentence)
+        reports += [f"{number} answered: {fault}" for fault in faults(visit)]
+        box = card(visit).bounding_box()
+        assert box["x"] >= 0
+        assert box["y"] >= 0
+        assert box["x"] + box["width"] <= width
+        assert box["y"] + box["height"] <= height
+        assert visit.page.evaluate("document.documentElement.scrollWidth") <= width
+    assert reports == []
+    visit.close()
+
+
 def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
-    visit = Visit(browser, url + "?step=4&resolution=16", viewport={"width": 1280, "height": 720})
+    visit = Visit(browser, url + SHOWN.format(4), viewport={"width": 1280, "height": 720})
     page = visit.page
     visit.wait_until_bound()
     page.keyboard.press("f")
