@@ -28,6 +28,11 @@ def card(visit):
     return visit.page.get_by_role("article", name="Lesson")
 
 
+def letters(part):
+    """Return the size of a part's letters in pixels."""
+    return float(part.evaluate("one => getComputedStyle(one).fontSize").removesuffix("px"))
+
+
 def step(visit, number):
     """Wait for a step of the lesson."""
     visit.page.wait_for_function(f"new URLSearchParams(location.search).get('step') == {number}")
@@ -131,8 +136,8 @@ def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
     page.keyboard.press("f")
     caption = card(visit).locator(".question")
     expect(card(visit)).to_have_class(re.compile("staged"))
-    size = float(caption.evaluate("one => getComputedStyle(one).fontSize").removesuffix("px"))
-    assert 24 <= size <= 32
+    assert 24 <= letters(caption) <= 32
+    assert letters(page.locator(".legend")) >= 16
     box = page.locator(".viewport").bounding_box()
     assert (box["x"], box["y"], box["width"]) == (0, 0, 1280)
     page.keyboard.press("Tab")
