@@ -11,6 +11,7 @@ from ..geodesics import BoneDistances
 from ..graph.fingerprint import mesh_fingerprint, require_same, skeleton_fingerprint
 from ..method import check_resolution
 from ..rig import Rig
+from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
 from .finding import KINDS, SEVERITIES, Finding, by_severity
 from .joints import check_joints
@@ -95,7 +96,7 @@ class Diagnosis:
 
 
 def diagnose(
-    rig: Rig,
+    rig: RigLike,
     resolution: int | None = None,
     *,
     distances: BoneDistances | None = None,
@@ -106,8 +107,8 @@ def diagnose(
 
     Parameters
     ----------
-    rig : Rig
-        Its mesh, its skeleton, and its weights if it has any.
+    rig : Rig, (mesh, skeleton) or (vertices, faces, joints, parents)
+        Its weights are checked if it has any.
     resolution : int, optional
         R, as of `build_graph`: thin parts are those of this lattice. When left out, that of the
         distances, else 64.
@@ -136,6 +137,7 @@ def diagnose(
     >>> for finding in cutcell.diagnose(rig).findings:  # doctest: +SKIP
     ...     print(finding.severity, finding.message)
     """
+    rig = as_rig(rig)
     if resolution is None:
         resolution = RESOLUTION if distances is None else distances.graph.lattice.resolution
     resolution = check_resolution(resolution)

@@ -16,6 +16,7 @@ from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
+from ..rig.inputs import SkeletonLike, as_skeleton
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
 from .allowed import allowed_distances, check_allowed
@@ -172,7 +173,7 @@ class BoneDistances(Summarized):
 
 def bone_distances(
     graph: CutCellGraph | BoneDistanceSolver,
-    skeleton: Skeleton,
+    skeleton: SkeletonLike,
     *,
     method: Method | MethodName = ANIMATION,
     nearest: int = 3,
@@ -188,7 +189,7 @@ def bone_distances(
     ----------
     graph : CutCellGraph or BoneDistanceSolver
         A solver is a graph that was prepared before, such as the `solver` of other distances.
-    skeleton : Skeleton
+    skeleton : Skeleton or (joints, parents)
         In the units of the graph's mesh.
     method : Method, "animation" or "paper"
         Its samples and leaf bones count here, and of how many joints its falloff needs
@@ -237,6 +238,7 @@ def bone_distances(
     else:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
     within = check_number("within", method.reach_needed if within is None else within, 1, np.inf)
+    skeleton = as_skeleton(skeleton)
     skeleton.require_joints()
     check_positions(skeleton.joints, "joint", SkeletonError)
     solver = graph if isinstance(graph, BoneDistanceSolver) else BoneDistanceSolver(graph)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import FileError, SkeletonError
 from ..rig import Rig
+from ..rig.inputs import as_rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes
@@ -138,7 +139,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     WeightsError
         The rig has no weights, or some that its glTF document cannot hold.
     """
-    path = Path(path)
+    path, rig = Path(path), as_rig(rig)
     with naming(path):
         rig.require_joints()
         check_output(path)

@@ -5,7 +5,18 @@ import pytest
 import pyvista
 import trimesh
 
-from cutcell import CutcellError, MeshError, Rig, Skeleton, SkeletonError, TriangleMesh, build_graph
+from cutcell import (
+    CutcellError,
+    MeshError,
+    Rig,
+    Skeleton,
+    SkeletonError,
+    TriangleMesh,
+    bone_distances,
+    build_graph,
+    diagnose,
+    save,
+)
 from cutcell.rig.inputs import as_mesh, as_rig
 from tests import meshes
 
@@ -76,3 +87,26 @@ def test_what_is_no_rig_is_refused_in_a_sentence():
         as_rig("rig.glb")
     with pytest.raises(SkeletonError, match=r"a skeleton must be .*, not None"):
         as_rig(((VERTICES, FACES), None))
+
+
+def test_diagnose_and_distances_take_arrays_too():
+    joints, parents = [[0.5, 0.5, 0.5], [0.5, 0.5, 0.7]], [-1, 0]
+    rig = as_rig((VERTICES, FACES, joints, parents))
+    arrays = diagnose((VERTICES, FACES, joints, parents), 8)
+    assert arrays.findings == diagnose(rig, 8).findings
+    graph = build_graph(rig.mesh, 8)
+    expected = bone_distances(graph, rig.skeleton).joint
+    np.testing.assert_array_equal(bone_distances(graph, (joints, parents)).joint, expected)
+
+
+@pytest.mark.parametrize(
+    ("function", "error"),
+    [
+        (diagnose, CutcellError),
+        (lambda rig: save("rig.glb", rig), CutcellError),
+        (lambda rig: bone_distances(build_graph((VERTICES, FACES), 8), rig), SkeletonError),
+    ],
+)
+def test_no_function_takes_a_mesh_for_a_rig(function, error):
+    with pytest.raises(error, match="must be"):
+        function(TriangleMesh(VERTICES, FACES))
