@@ -90,5 +90,5 @@ def demo_path(id: str) -> Path:
     for demo in DEMOS:
         if demo.id == id:
             return demo.path
-    known = ", ".join(demo.id for demo in DEMOS)
-    raise KeyError(f"no demo character is called {id!r}; there are {known}")
+    names = ", ".join(demo.id for demo in DEMOS)
+    raise KeyError(f"no demo character is called {id!r}; there are {names}")

@@ -17,12 +17,12 @@ def make(id: str) -> Character:
 
 def main(ids: list[str]) -> int:
     """Write the GLB files of the characters named, or of all; return the exit code."""
-    known = [demo.id for demo in DEMOS]
-    unknown = [id for id in ids if id not in known]
+    all_ids = [demo.id for demo in DEMOS]
+    unknown = [id for id in ids if id not in all_ids]
     if unknown:
-        print(f"no demo character is called {unknown[0]!r}; there are {', '.join(known)}")
+        print(f"no demo character is called {unknown[0]!r}; there are {', '.join(all_ids)}")
         return 2
-    for id in ids or known:
+    for id in ids or all_ids:
         start = time.perf_counter()
         glb.save(demo_path(id), make(id))
         size = demo_path(id).stat().st_size / 1e6

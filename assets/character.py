@@ -47,11 +47,11 @@ class Bones:
 
     def below(self, name: str) -> Iterator[int]:
         """Yield the index of a joint and of all joints below it."""
-        found = {self.names.index(name)}
-        yield from found
+        listed = {self.names.index(name)}
+        yield from listed
         for child, parent in enumerate(self.parents):
-            if parent in found:
-                found.add(child)
+            if parent in listed:
+                listed.add(child)
                 yield child
 
 

@@ -35,10 +35,10 @@ def torn(walker: Character) -> Character:
     surfaces = []
     for surface in walker.surfaces:
         middle = surface.vertices[surface.faces].mean(axis=1)
-        kept = rng.random(len(middle)) >= LOST
+        is_left = rng.random(len(middle)) >= LOST
         for centre, radius in HOLES:
-            kept &= ((middle - centre) ** 2).sum(axis=1) > radius**2
-        corners = surface.faces[kept].ravel()
+            is_left &= ((middle - centre) ** 2).sum(axis=1) > radius**2
+        corners = surface.faces[is_left].ravel()
         surfaces.append(
             replace(
                 surface,

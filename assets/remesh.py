@@ -60,8 +60,8 @@ def collapse_short_edges(
             break
         good = _collapse_is_good(vertices, faces, wanted, edges[chosen])
         refused = np.union1d(refused, keys[chosen[~good]])
-        vertices, faces, kept = _collapse(vertices, faces, edges[chosen[good]])
-        wanted, stamp = wanted[kept], stamp[kept]
+        vertices, faces, left = _collapse(vertices, faces, edges[chosen[good]])
+        wanted, stamp = wanted[left], stamp[left]
     return vertices, faces, wanted
 
 
@@ -77,8 +77,8 @@ def flip_edges(vertices: NDArray, faces: NDArray, rounds: int = 30) -> NDArray:
         after = after + sum(np.abs(degree[v] - 5) ** 2 for v in (c, d))
         candidate = (after < before) & (degree[a] > 3) & (degree[b] > 3)
         count = len(vertices)
-        known = np.minimum(a, b) * count + np.maximum(a, b)
-        candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), known)
+        present = np.minimum(a, b) * count + np.maximum(a, b)
+        candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), present)
         rows = np.flatnonzero(candidate)
         candidate[rows] = _flip_is_good(vertices, faces, sides[rows])
         chosen = _apart(candidate, after - before, np.stack([a, b, c, d], 1), count)
@@ -107,8 +107,8 @@ def flip_thin(
         candidate = (before < thin) & (after > 1.2 * before)
         candidate &= (labels[one] == labels[two]) | (before < SLIVER)
         count = len(vertices)
-        known = np.minimum(a, b) * count + np.maximum(a, b)
-        candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), known)
+        present = np.minimum(a, b) * count + np.maximum(a, b)
+        candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), present)
         facing = np.ones(len(edges), bool)
         for new in _flipped(faces, sides):
             n = np.cross(*np.diff(vertices[new], axis=1).transpose(1, 0, 2))
@@ -255,10 +255,10 @@ def _collapse(
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     alive = np.ones(len(vertices), bool)
     alive[b] = False
-    kept = np.flatnonzero(alive)
+    left = np.flatnonzero(alive)
     number = np.full(len(vertices), -1)
-    number[kept] = np.arange(len(kept))
-    return vertices[kept], number[faces], kept
+    number[left] = np.arange(len(left))
+    return vertices[left], number[faces], left
 
 
 def _split_faces(faces: NDArray, sides: NDArray, middle: NDArray) -> NDArray:

@@ -47,12 +47,12 @@ def from_parts(
 def quantised(weights: NDArray, influences: int = 4) -> NDArray:
     """Keep the largest few of each row, as whole multiples of 1/4096 that sum to 1."""
     order = np.argsort(-np.round(weights, 9), axis=1, kind="stable")[:, :influences]
-    kept = np.take_along_axis(weights, order, axis=1)
-    kept = np.floor(kept / kept.sum(axis=1, keepdims=True) * STEP + 1e-6)
-    kept[kept < STEP * 0.01] = 0
-    kept[:, 0] += STEP - kept.sum(axis=1)
+    largest = np.take_along_axis(weights, order, axis=1)
+    largest = np.floor(largest / largest.sum(axis=1, keepdims=True) * STEP + 1e-6)
+    largest[largest < STEP * 0.01] = 0
+    largest[:, 0] += STEP - largest.sum(axis=1)
     result = np.zeros_like(weights)
-    np.put_along_axis(result, order, kept / STEP, axis=1)
+    np.put_along_axis(result, order, largest / STEP, axis=1)
     return result
 
 
@@ -86,9 +86,9 @@ def _homes(distances: NDArray, faces: NDArray, bones: Bones) -> NDArray:
         order = np.lexsort((size, joint))
         main[order[np.diff(joint[order], append=-1) != 0]] = True
         a, b = patch[start], patch[end]
-        kept = main.copy()
-        kept[a[main[b] & neighbours[joint[a], joint[b]]]] = True
-        stray = ~kept[patch]
+        covered = main.copy()
+        covered[a[main[b] & neighbours[joint[a], joint[b]]]] = True
+        stray = ~covered[patch]
         if not stray.any():
             return home
         distances[stray, home[stray]] = np.inf

@@ -43,7 +43,7 @@ def read(path: Path) -> tuple[Counter[str], dict[str, float]]:
 def table(before: Path, after: Path) -> Table:
     """Compare two runs, slowest folder first; the browser's tests are no part of the sum."""
     (counts, seconds), (new_counts, new_seconds) = read(before), read(after)
-    found = Table(
+    result = Table(
         "Tests",
         ["folder", "tests before", "tests after", "seconds before", "seconds after", "share"],
         "Seconds are summed over all tests, as each worker counts them.",
@@ -53,8 +53,8 @@ def table(before: Path, after: Path) -> Table:
         sums = [sum(c[one] for one in members) for c in (counts, new_counts, seconds, new_seconds)]
         if sums[0] and sums[1]:
             share = f"{sums[3] / sums[2]:.0%}"
-            found.add(name, *sums[:2], f"{sums[2]:.0f}", f"{sums[3]:.0f}", share)
-    return found
+            result.add(name, *sums[:2], f"{sums[2]:.0f}", f"{sums[3]:.0f}", share)
+    return result
 
 
 def main() -> None:

@@ -51,12 +51,12 @@ def find() -> str:
         tried.append(f"  {path}: {problem}")
         if path == os.environ.get(VARIABLE):
             break  # a person chose it: taking another one in silence would mislead
-    found = "\n".join(["These were found and do not open a page:", *tried]) if tried else ""
+    refused = "\n".join(["These were found and do not open a page:", *tried]) if tried else ""
     raise NoChromiumError(
         "The browser tests need a Chromium, and there is none that works. Do one of these:\n"
         "  sudo apt-get install chromium\n"
         "  .venv/bin/playwright install --with-deps chromium\n"
-        f"  export {VARIABLE}=/path/to/chromium\n" + found
+        f"  export {VARIABLE}=/path/to/chromium\n" + refused
     )
 
 

@@ -265,12 +265,12 @@ export class Actor {
   posed() {
     const {pose, dual, poseCount} = this.renderer
     if (!this.skin || !pose) { return this.rest }
-    const known = this.known
-    if (known?.poseCount !== poseCount || known.skin !== this.skin || known.rest !== this.rest) {
+    const last = this.lastPosed
+    if (last?.poseCount !== poseCount || last.skin !== this.skin || last.rest !== this.rest) {
       const {skin, rest} = this
-      this.known = {poseCount, skin, rest, points: skinned(skin, rest, pose, dual)}
+      this.lastPosed = {poseCount, skin, rest, points: skinned(skin, rest, pose, dual)}
     }
-    return this.known.points
+    return this.lastPosed.points
   }
 
   get values() {

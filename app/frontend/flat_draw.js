@@ -114,8 +114,8 @@ export class FlatDrawing {
       }
     }
     for (const [key, segments] of groups) {
-      const [color, kept] = key.split(" ")
-      this.lines(segments, color, (kept === "1" ? 6 : 1.5) * this.unit)
+      const [color, isInside] = key.split(" ")
+      this.lines(segments, color, (isInside === "1" ? 6 : 1.5) * this.unit)
     }
     this.chosenRay(([, , winding]) => windingText(winding))
   }

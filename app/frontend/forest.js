@@ -14,15 +14,15 @@ export class Forest {
 
   // The rows that are seen, as indices.
   seen() {
-    const found = []
+    const shown = []
     let below = Infinity
     for (let i = 0; i < this.rows.length; i++) {
       const {joint, level} = this.rows[i]
       if (level > below) { continue }
       below = this.closed.has(joint) ? level : Infinity
-      found.push(i)
+      shown.push(i)
     }
-    return found
+    return shown
   }
 
   parent(i) {

@@ -53,9 +53,9 @@ export class Pointer {
       this.view.model.send_msg({type: "pick-node", node: node.actor.reading.values[node.point]})
       return
     }
-    const found = this.under(...at)
-    if (!found) { return }
-    const {joint, vertex} = found
+    const target = this.under(...at)
+    if (!target) { return }
+    const {joint, vertex} = target
     const view = this.view.renderer.viewAt(...at)
     this.view.model.send_msg(
       joint === undefined ? {type: "pick-vertex", vertex, view} : {type: "pick", joint},
@@ -95,9 +95,9 @@ export class Pointer {
       this.view.overlay.showBone(valueAt(node.actor, node.point), x, y)
       return
     }
-    const found = this.view.brush.part ? null : this.under(x, y)
-    if (found?.joint !== undefined) {
-      this.view.overlay.showBone(this.view.bones.names[found.joint], x, y)
+    const target = this.view.brush.part ? null : this.under(x, y)
+    if (target?.joint !== undefined) {
+      this.view.overlay.showBone(this.view.bones.names[target.joint], x, y)
       return
     }
     const text = this.lineReading(x, y) ?? this.surfaceReading(x, y)

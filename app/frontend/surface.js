@@ -7,8 +7,8 @@ import {projectionMatrix} from "./vtk_private.js"
 export function hitSurface(renderer, actor, x, y, cut) {
   if (!actor.visible || actor.kind !== "surface" || !actor.triangles) { return null }
   const {origin, direction} = renderer.ray(x, y)
-  const kept = cut && actor.clipped ? (at) => keeps(cut, actor.slab, at) : undefined
-  return actor.tree.firstHit(origin, direction, kept)
+  const isLeft = cut && actor.clipped ? (at) => keeps(cut, actor.slab, at) : undefined
+  return actor.tree.firstHit(origin, direction, isLeft)
 }
 
 function keeps({origin, normal}, slab, at) {

@@ -205,8 +205,8 @@ def _spoilt(rig: Rig, random: Random) -> Rig:
         for _ in range(int(random.integers(1, 4))):
             centre = vertices[random.integers(len(vertices))]
             away = np.linalg.norm(vertices[faces].mean(axis=1) - centre, axis=1)
-            kept = faces[away > 0.04 * size]
-            faces = kept if len(kept) > 100 else faces
+            rest = faces[away > 0.04 * size]
+            faces = rest if len(rest) > 100 else faces
     if loose:
         count = int(random.integers(1, 6))
         vertices, faces, weights = _with_buttons(vertices, faces, weights, count, random)

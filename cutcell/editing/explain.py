@@ -131,8 +131,8 @@ class Explanation:
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain data; infinite distances are None."""
-        found: dict[str, Any] = _finite(asdict(self))
-        return found
+        data: dict[str, Any] = _finite(asdict(self))
+        return data
 
 
 def explain(

@@ -14,19 +14,19 @@ LESS = 0.2
 
 
 @pytest.fixture
-def told():
+def reports():
     return []
 
 
-def begin(work, action, told, report=lambda stage, fraction: None):
-    """Start some work of one name, of which results are told."""
-    work.start("work", action, told.append, report=report)
+def begin(work, action, reports, report=lambda stage, fraction: None):
+    """Start some work of one name, whose results are reported."""
+    work.start("work", action, reports.append, report=report)
 
 
 @pytest.fixture
-def start(loop, told):
+def start(loop, reports):
     def fail(error):
-        told.append(("failed", error, threading.current_thread()))
+        reports.append(("failed", error, threading.current_thread()))
 
     work = Work(loop, fail)
 
@@ -34,8 +34,8 @@ def start(loop, told):
         work.start(
             "work",
             action,
-            lambda result: told.append(("done", result, threading.current_thread())),
-            report=lambda stage, fraction: told.append(("progress", stage, fraction)),
+            lambda result: reports.append(("done", result, threading.current_thread())),
+            report=lambda stage, fraction: reports.append(("progress", stage, fraction)),
         )
 
     start.work = work
@@ -54,54 +54,54 @@ def endless(started):
     return work
 
 
-def test_work_runs_in_another_thread_and_is_told_of_in_this(loop, told, start):
+def test_work_runs_in_another_thread_and_is_told_of_in_this(loop, reports, start):
     start(lambda progress: threading.current_thread())
-    loop.run_until(lambda: len(told) == 1)
-    what, worker, teller = told[0]
+    loop.run_until(lambda: len(reports) == 1)
+    what, worker, teller = reports[0]
     assert what == "done"
     assert worker is not threading.current_thread()
     assert teller is threading.current_thread()
     assert not start.work.busy
 
 
-def test_progress_arrives_before_the_result(loop, told, start):
+def test_progress_arrives_before_the_result(loop, reports, start):
     def work(progress):
         for stage in ("one", "two"):
             progress(stage, 0.25)
         return 3
 
     start(work)
-    loop.run_until(lambda: any(t[0] == "done" for t in told))
-    assert [t[:2] for t in told] == [("progress", "one"), ("progress", "two"), ("done", 3)]
+    loop.run_until(lambda: any(t[0] == "done" for t in reports))
+    assert [t[:2] for t in reports] == [("progress", "one"), ("progress", "two"), ("done", 3)]
 
 
-def test_progress_is_thinned_out(loop, told, start):
+def test_progress_is_thinned_out(loop, reports, start):
     start(lambda progress: [progress("many", i / 10000) for i in range(10000)] and None)
-    loop.run_until(lambda: any(t[0] == "done" for t in told))
-    assert len(told) < 200
+    loop.run_until(lambda: any(t[0] == "done" for t in reports))
+    assert len(reports) < 200
 
 
-def test_errors_are_told(loop, told, start):
+def test_errors_are_told(loop, reports, start):
     def work(progress):
         raise ValueError("no")
 
     start(work)
-    loop.run_until(lambda: bool(told))
-    assert told[0][0] == "failed"
-    assert str(told[0][1]) == "no"
+    loop.run_until(lambda: bool(reports))
+    assert reports[0][0] == "failed"
+    assert str(reports[0][1]) == "no"
 
 
-def test_newer_work_supersedes_what_runs(loop, told, start):
+def test_newer_work_supersedes_what_runs(loop, reports, start):
     started = threading.Event()
     start(endless(started))
     assert started.wait(120)
     start(lambda progress: "new")
-    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    loop.run_until(lambda: any(t[0] == "done" for t in reports))
     loop.run_for(0.2)
-    assert [t[1] for t in told if t[0] != "progress"] == ["new"]
+    assert [t[1] for t in reports if t[0] != "progress"] == ["new"]
 
 
-def test_a_result_that_comes_too_late_is_dropped(loop, told, start):
+def test_a_result_that_comes_too_late_is_dropped(loop, reports, start):
     held, go = threading.Event(), threading.Event()
 
     def deaf(progress):  # asks for no permission to go on, as a numeric kernel does
@@ -113,26 +113,26 @@ def test_a_result_that_comes_too_late_is_dropped(loop, told, start):
     assert held.wait(10)
     start(lambda progress: "new")
     go.set()
-    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    loop.run_until(lambda: any(t[0] == "done" for t in reports))
     loop.run_for(0.2)
-    assert [t[1] for t in told if t[0] == "done"] == ["new"]
+    assert [t[1] for t in reports if t[0] == "done"] == ["new"]
 
 
-def test_cancelling_stops_without_a_word(loop, told, start):
+def test_cancelling_stops_without_a_word(loop, reports, start):
     started = threading.Event()
     start(endless(started))
     assert started.wait(120)
     assert start.work.cancel("work")
     assert not start.work.cancel("work")
     loop.run_for(0.2)
-    assert [t for t in told if t[0] != "progress"] == []
+    assert [t for t in reports if t[0] != "progress"] == []
 
 
-def test_a_closed_session_starts_nothing(loop, told, start):
+def test_a_closed_session_starts_nothing(loop, reports, start):
     start.work.close()
     start(lambda progress: 1)
     loop.run_for(0.1)
-    assert told == []
+    assert reports == []
 
 
 def test_sessions_compute_in_turn(loop):
@@ -152,18 +152,18 @@ def test_sessions_compute_in_turn(loop):
 
 
 def test_waiting_for_a_turn_can_be_cancelled(loop):
-    started, told = threading.Event(), []
-    first, second = Work(loop, told.append), Work(loop, told.append)
-    begin(first, endless(started), told)
+    started, reports = threading.Event(), []
+    first, second = Work(loop, reports.append), Work(loop, reports.append)
+    begin(first, endless(started), reports)
     assert started.wait(120)
     stages = []
-    begin(second, lambda p: "never", told, lambda stage, f: stages.append(stage))
+    begin(second, lambda p: "never", reports, lambda stage, f: stages.append(stage))
     loop.run_until(lambda: bool(stages))
     assert "waiting" in stages[0]
     second.close()
     first.close()
     loop.run_for(0.3)
-    assert told == []
+    assert reports == []
 
 
 def deaf_work(go, started=None):
@@ -187,37 +187,37 @@ def impatient(monkeypatch):
     monkeypatch.setattr("cutcell_app.derive.jobs.PATIENCE", LESS)
 
 
-def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told, impatient):
+def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, reports, impatient):
     go, started = threading.Event(), threading.Event()
-    deaf, other = Work(loop, nothing), Work(loop, told.append)
+    deaf, other = Work(loop, nothing), Work(loop, reports.append)
     begin(deaf, deaf_work(go, started), [])
     assert started.wait(120)
-    begin(other, lambda progress: "done", told)
+    begin(other, lambda progress: "done", reports)
     loop.run_for(LESS + 0.3)
-    assert told == [], "it is wanted, and others wait for it"
+    assert reports == [], "it is wanted, and others wait for it"
     deaf.cancel("work")
-    loop.run_until(lambda: told == ["done"])
+    loop.run_until(lambda: reports == ["done"])
     go.set()
 
 
-def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told, impatient):
+def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, reports, impatient):
     go, deaf = threading.Event(), Work(loop, nothing)
     for _ in range(MAX_UNRESPONSIVE + 1):
         started = threading.Event()
         begin(deaf, deaf_work(go, started), [])
         assert started.wait(LESS + 120)
     deaf.cancel("work")
-    other = Work(loop, told.append)
-    begin(other, lambda progress: "done", told)
+    other = Work(loop, reports.append)
+    begin(other, lambda progress: "done", reports)
     loop.run_for(LESS + 0.5)
-    assert told == []
+    assert reports == []
     go.set()
-    loop.run_until(lambda: told == ["done"])
+    loop.run_until(lambda: reports == ["done"])
 
 
-def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
+def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, reports):
     go, begun = threading.Event(), []
-    work_of_page = Work(loop, told.append)
+    work_of_page = Work(loop, reports.append)
 
     def work(number, progress):
         begun.append(number)
@@ -225,50 +225,50 @@ def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
         return number
 
     for number in range(5):
-        work_of_page.newest("scene", partial(work, number), told.append)
+        work_of_page.newest("scene", partial(work, number), reports.append)
     loop.run_for(0.1)
     go.set()
-    loop.run_until(lambda: told == [0, 4])
+    loop.run_until(lambda: reports == [0, 4])
     assert begun == [0, 4]
 
 
-def test_the_newest_is_done_after_a_failure_too(loop, told):
-    work_of_page = Work(loop, told.append)
+def test_the_newest_is_done_after_a_failure_too(loop, reports):
+    work_of_page = Work(loop, reports.append)
     error, go = ValueError("no"), threading.Event()
 
     def fails(progress):
         assert go.wait(10)
         raise error
 
-    work_of_page.newest("scene", fails, told.append)
-    work_of_page.newest("scene", lambda progress: "yes", told.append)
+    work_of_page.newest("scene", fails, reports.append)
+    work_of_page.newest("scene", lambda progress: "yes", reports.append)
     go.set()
-    loop.run_until(lambda: told == [error, "yes"])
+    loop.run_until(lambda: reports == [error, "yes"])
     work_of_page.close()
 
 
-def test_running_out_of_memory_is_told_like_any_error(loop, told, start):
+def test_running_out_of_memory_is_told_like_any_error(loop, reports, start):
     def work(progress):
         raise MemoryError("Unable to allocate 44.0 GiB")
 
     start(work)
-    loop.run_until(lambda: bool(told))
-    assert told[0][0] == "failed"
+    loop.run_until(lambda: bool(reports))
+    assert reports[0][0] == "failed"
     start(lambda progress: "next")
-    loop.run_until(lambda: told[-1][:2] == ("done", "next"))
+    loop.run_until(lambda: reports[-1][:2] == ("done", "next"))
 
 
 def test_a_gate_holds_actions_back_and_keeps_their_order(loop):
-    told = []
+    reports = []
     gate = Gate(loop)
     for i in range(3):
-        gate(lambda i=i: told.append(i))
+        gate(lambda i=i: reports.append(i))
     loop.run_for(0.1)
-    assert told == []
+    assert reports == []
     gate.open()
-    gate(lambda: told.append(3))
-    loop.run_until(lambda: len(told) == 4)
-    assert told == [0, 1, 2, 3]
+    gate(lambda: reports.append(3))
+    loop.run_until(lambda: len(reports) == 4)
+    assert reports == [0, 1, 2, 3]
 
 
 class Document:
@@ -283,17 +283,17 @@ class Document:
         action()
 
 
-def test_a_document_is_only_touched_on_its_own_thread(loop, told):
+def test_a_document_is_only_touched_on_its_own_thread(loop, reports):
     document = Document()
     tornado = SimpleNamespace(add_callback=lambda act, *given: loop(lambda: act(*given)))
     schedule = on_its_thread(document, tornado)
-    worker = threading.Thread(target=schedule, args=(lambda: told.append("a"),))
+    worker = threading.Thread(target=schedule, args=(lambda: reports.append("a"),))
     worker.start()
     worker.join()
-    assert told == document.threads == []
-    loop.run_until(lambda: told == ["a"])
+    assert reports == document.threads == []
+    loop.run_until(lambda: reports == ["a"])
     assert document.threads == [threading.current_thread()]
     document.session_context = None  # its browser is gone
-    schedule(lambda: told.append("b"))
+    schedule(lambda: reports.append("b"))
     loop.run_for(0.05)
-    assert told == ["a"]
+    assert reports == ["a"]
