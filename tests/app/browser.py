@@ -163,20 +163,20 @@ def served(*arguments: str, program: Sequence[str] = ("cutcell",)) -> Iterator[s
         preexec_fn=reset_signals,
     )
     lines: list[str] = []
-    known = threading.Event()
+    listening = threading.Event()
 
     def read() -> None:
         assert process.stdout is not None
         for line in process.stdout:
             lines.append(line)
             if "http://" in line:
-                known.set()
-        known.set()
+                listening.set()
+        listening.set()
 
     reader = threading.Thread(target=read, daemon=True)
     reader.start()
     try:
-        known.wait(START_SECONDS)
+        listening.wait(START_SECONDS)
         result = re.search(r"http://\S+", "".join(lines))
         assert result, "the server did not start:\n" + "".join(lines)
         yield result.group()

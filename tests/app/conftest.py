@@ -107,21 +107,21 @@ def url(small_path: Path) -> Iterator[str]:
 
 
 @pytest.fixture(scope="package")
-def kept() -> Iterator[list[Visit]]:
+def open_visits() -> Iterator[list[Visit]]:
     """Keep the page of `visit` from test to test."""
-    kept: list[Visit] = []
-    yield kept
-    for visit in kept:
+    visits: list[Visit] = []
+    yield visits
+    for visit in visits:
         visit.close()
 
 
 @pytest.fixture
-def visit(browser: Browser, url: str, kept: list[Visit]) -> Iterator[Visit]:
+def visit(browser: Browser, url: str, open_visits: list[Visit]) -> Iterator[Visit]:
     """Show the small figure, bound, on the panel Weights, with nothing else chosen.
 
     It is the page of the test before, where that can be brought back to its beginning.
     """
-    visit = kept.pop() if kept else None
+    visit = open_visits.pop() if open_visits else None
     if visit is not None and not visit.begin_anew():
         visit.context.close()
         visit = None
@@ -131,5 +131,5 @@ def visit(browser: Browser, url: str, kept: list[Visit]) -> Iterator[Visit]:
         visit.dismiss()  # the box above the head, which no bone reaches
         visit.remember_beginning()
     yield visit
-    kept.append(visit)
+    open_visits.append(visit)
     visit.check()

@@ -194,13 +194,13 @@ TOLD_QUICKLY = """async () => {
   ]
   const before = data.object
   const strange = []
-  let told = before
+  let text = before
   data.properties.object.change.connect(() => {
-    if (data.object !== told) { strange.push([told, data.object]) }
+    if (data.object !== text) { strange.push([text, data.object]) }
   })
   for (let round = 0; round < 300; round++) {
-    told = round === 299 ? before : `told ${round}`
-    data.setv({object: told}, {sync: false})
+    text = round === 299 ? before : `round ${round}`
+    data.setv({object: text}, {sync: false})
     await pauses[round % 3]()
   }
   // What the component would say by itself comes with a frame, or when it has nothing else to do.

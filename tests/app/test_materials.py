@@ -129,9 +129,9 @@ def test_a_repaired_mesh_gets_its_own(posing, loop, rig):
 
     posing.state.pose_colors = "materials"
     settled(posing, loop)
-    kept = np.ones(len(rig.mesh.faces), bool)
-    kept[3] = False
-    posing.state.rig = with_faces(rig, kept, ~kept)
+    is_left = np.ones(len(rig.mesh.faces), bool)
+    is_left[3] = False
+    posing.state.rig = with_faces(rig, is_left, ~is_left)
     loop.rest(posing)
     textures = posing.state.materials
     assert len(textures.body.corners) == len(rig.mesh.faces) - 1

@@ -109,14 +109,14 @@ def test_colours_follow_each_piece_and_are_those_of_the_scene_after(painter, loo
     state = painter.state
     first = resolve(state, painter.memo).actors["body"].scalars
     stroke(painter, MIDDLE, MIDDLE + 1, MIDDLE + 2)
-    told = [answer["painted"] for answer in painter.answers]
-    assert len(told) == 3
-    sizes = [len(one["vertices"]) for one in told]
+    pieces = [answer["painted"] for answer in painter.answers]
+    assert len(pieces) == 3
+    sizes = [len(one["vertices"]) for one in pieces]
     assert 0 < sizes[0] <= sizes[1] <= sizes[2]
     settled(painter, loop)
     last = resolve(state, painter.memo).actors["body"].scalars
     seen = first.copy()
-    seen[told[-1]["vertices"]] = told[-1]["scalars"]
+    seen[pieces[-1]["vertices"]] = pieces[-1]["scalars"]
     np.testing.assert_allclose(seen, last, rtol=0, atol=1 / STEPS)
 
 
@@ -126,9 +126,9 @@ def test_colours_of_a_few_vertices_are_those_of_the_whole(painter, shown):
     state = painter.state
     state.weights_shown = shown
     some = np.array([3, 20, 41])
-    found = painted_colors(state, some, state.weights[some])
+    colors = painted_colors(state, some, state.weights[some])
     body = resolve(state, painter.memo).actors["body"]
-    ((name, few),) = found.items()
+    ((name, few),) = colors.items()
     assert np.array_equal(few, getattr(body, name)[some])
     state.weights_of = "file"
     assert painted_colors(state, some, state.weights[some]) == {}
@@ -227,9 +227,9 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
     check_bound_as_by_core(painter, arm_rig())
     (layer,) = held.layers
     columns = [state.rig.skeleton.names.index(name) for name in layer.content.joints]
-    found = state.binding.weights[layer.content.vertices]
-    np.testing.assert_array_equal(found[:, columns], layer.content.rows.toarray())
-    np.testing.assert_allclose(found[:, columns].sum(axis=1), 1)
+    bound = state.binding.weights[layer.content.vertices]
+    np.testing.assert_array_equal(bound[:, columns], layer.content.rows.toarray())
+    np.testing.assert_allclose(bound[:, columns].sum(axis=1), 1)
 
 
 def test_keys_and_switches(painter, loop):

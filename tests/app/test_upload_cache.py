@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from cutcell.errors import FileError
-from cutcell_app.files import upload_cache as kept
+from cutcell_app.files import upload_cache
 from cutcell_app.files.storage import LOCK, NEW_SECONDS, UNKNOWN_SECONDS, Storage
 from cutcell_app.files.upload_cache import MB, UploadCache
 from tests.conftest import ROOT
@@ -50,10 +50,10 @@ class TestStaying:
         keep.leave(group.key)
         keep.sweep()
         assert group.paths[0].exists()
-        later = time.monotonic() + kept.KEPT_SECONDS + 1
+        later = time.monotonic() + upload_cache.KEPT_SECONDS + 1
         # Its own clock alone: event loops of other tests in this process go by the real one.
         monkeypatch.setattr(
-            kept, "time", SimpleNamespace(monotonic=lambda: later, sleep=time.sleep)
+            upload_cache, "time", SimpleNamespace(monotonic=lambda: later, sleep=time.sleep)
         )
         keep.sweep()
         assert not group.folder.exists()
