@@ -126,8 +126,9 @@ def load_again(session: Session, character: str, chosen: Callable[[], None] = la
     paths = session.uploads.take(key) if key else session.paths
     if paths is None:
         name = session.uploads.listed.pop(key, "that character")
-        session.fail(FileError(f"the server no longer has the files of {name}; drop them again"))
-        session.state.param.trigger("demo")
+        session.refuse(
+            FileError(f"the server no longer has the files of {name}; drop them again"), "demo"
+        )
     else:
         load_files(session, paths, key, chosen)
 

@@ -150,6 +150,14 @@ class Session:
             logger.error("unexpected error", exc_info=error)
         self.state.message = ("error", error_text(error))
 
+    def refuse(self, error: CutcellError, choice: str = "edits") -> None:
+        """Reset the controls to what is chosen, then show why a new choice is refused.
+
+        In this order: who reads the error may enter something else at once.
+        """
+        self.state.param.trigger(choice)
+        self.fail(error)
+
     @property
     def folder(self) -> Path:
         """A folder for files that are about to be handed over."""

@@ -456,3 +456,13 @@ def test_a_coordinate_that_is_rounding_noise_is_shown_as_zero(bound):
     moving.put(bound, [3.55e-15, *joint[1:]])
     (x,) = (field for field in section.select(pmui.TextInput) if field.label == "X")
     assert x.value == "0"
+
+
+def test_controls_are_reset_before_the_error_is_shown(bound):
+    """Who reads the error may enter something else, which a late reset would take away."""
+    changes = []
+    bound.state.param.watch(lambda event: changes.append(event.name), "message")
+    bound.state.param.watch(lambda event: changes.append(event.name), "edits", onlychanged=False)
+    first, second, *_ = bound.state.rig.skeleton.names
+    correct.rename(bound, bound.state.rig.skeleton.names.index(second), first)
+    assert changes == ["edits", "message"]

@@ -28,8 +28,7 @@ def correct(session: Session, edits: Edits) -> None:
     try:
         state.param.update(**edited_state(session, edits))
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("edits")  # reset the controls
+        session.refuse(error)
 
 
 def edited_state(session: Session, edits: Edits) -> dict[str, Any]:
@@ -62,8 +61,7 @@ def correct_joint(session: Session, joint: int, **changed: Any) -> None:
             edits = stack.with_reach(edits, name, gain, radius)
         one = replace(edited.get(name, JointEdit()), **changed)
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("edits")
+        session.refuse(error)
         return
     correct(session, replace(edits, joints={**edited, name: one}))
 
@@ -83,8 +81,7 @@ def rename(session: Session, joint: int, name: str) -> None:
                 f'another joint is called "{shown_name(name)}" already; choose another name'
             )
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("edits")
+        session.refuse(error)
         return
     correct(session, renamed(state.edits, old, name))
 
@@ -102,8 +99,7 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
     deform = np.zeros(len(state.rig.skeleton.joints), bool)
     deform[list(joints)] = True
     if not deform.any():
-        session.fail(ParameterError("no joint is left that may carry weight; keep at least one"))
-        state.param.trigger("edits")
+        session.refuse(ParameterError("no joint is left that may carry weight; keep at least one"))
         return
     edited = dict(state.edits.joints)
     for joint, name in enumerate(state.rig.skeleton.names):

@@ -86,8 +86,7 @@ def put(session: Session, place: ArrayLike) -> None:
     try:
         edits = moved(session, place)
     except CutcellError as error:
-        session.fail(error)
-        session.state.param.trigger("edits")  # reset the text to the position
+        session.refuse(error)
         return
     correct(session, edits)
 

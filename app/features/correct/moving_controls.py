@@ -50,8 +50,7 @@ def _coordinate(axis: int) -> Any:
         try:
             at[axis] = float(text)
         except ValueError:
-            session.fail(ParameterError(f"{'XYZ'[axis]} must be a number, not {shown(text)}"))
-            state.param.trigger("edits")  # reset the field
+            session.refuse(ParameterError(f"{'XYZ'[axis]} must be a number, not {shown(text)}"))
             return
         moving.put(session, at)
 

@@ -52,8 +52,7 @@ def hang_on(session: Session, parent: str) -> None:
             to = skeleton.names[above] if above >= 0 else ""
             edited[name] = replace(edited.get(name, JointEdit()), parent=to)
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("edits")  # the menu shows again what there is
+        session.refuse(error)
         return
     correct(session, replace(state.edits, joints=edited))
 

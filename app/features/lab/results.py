@@ -67,8 +67,7 @@ def choose_values(session: Session, text: str) -> None:
             raise ParameterError(f"a sweep has at most {MAX_VALUES} values")
         state.sweep_values = text.strip()
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("sweep_values")
+        session.refuse(error, "sweep_values")
 
 
 def choices_of(option: str, text: str) -> dict[str, Any]:

@@ -216,8 +216,7 @@ def edit(session: Session, vertex: int, joint: int, value: float) -> None:
         rows_of.check_unlocked(joint)
         rows = ops.fill(rows_of, joint, value)
     except CutcellError as error:
-        session.fail(error)
-        state.param.trigger("edits")  # reset the table
+        session.refuse(error)
         return
     put_rows(session, vertices, rows, f"Edit {_name(state.rig, joint)}")
 
