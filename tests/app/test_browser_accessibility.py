@@ -2,6 +2,7 @@
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import expect
 
 from cutcell_app.document.state import PANELS
 
@@ -9,6 +10,9 @@ pytestmark = pytest.mark.slow
 
 OVER = "region"
 """The rule that menus and dialogs break: MUI draws them outside of all landmarks."""
+
+LAYER = "[data-pmui-layer]"
+"""What menus and tooltips are drawn in; it goes with them."""
 
 # Brings all that fades to its end, in all shadow roots: half of a colour is no fault.
 FADED = """async () => {
@@ -44,6 +48,7 @@ def faults(visit, besides=None, **rules):
 
 def in_both_themes(visit):
     """Return the faults in the light, and in the dark, where only colours differ."""
+    expect(visit.page.locator(LAYER)).to_have_count(0)  # of a menu or a tooltip that is leaving
     result = faults(visit)
     visit.button("Toggle theme").click()
     visit.settle()
