@@ -60,8 +60,8 @@ def collapse_short_edges(
             break
         good = _collapse_is_good(vertices, faces, wanted, edges[chosen])
         refused = np.union1d(refused, keys[chosen[~good]])
-        vertices, faces, left = _collapse(vertices, faces, edges[chosen[good]])
-        wanted, stamp = wanted[left], stamp[left]
+        vertices, faces, remaining = _collapse(vertices, faces, edges[chosen[good]])
+        wanted, stamp = wanted[remaining], stamp[remaining]
     return vertices, faces, wanted
 
 
@@ -255,10 +255,10 @@ def _collapse(
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     alive = np.ones(len(vertices), bool)
     alive[b] = False
-    left = np.flatnonzero(alive)
+    remaining = np.flatnonzero(alive)
     number = np.full(len(vertices), -1)
-    number[left] = np.arange(len(left))
-    return vertices[left], number[faces], left
+    number[remaining] = np.arange(len(remaining))
+    return vertices[remaining], number[faces], remaining
 
 
 def _split_faces(faces: NDArray, sides: NDArray, middle: NDArray) -> NDArray:

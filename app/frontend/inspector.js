@@ -152,8 +152,10 @@ function renewForm(form, other) {
     const box = old.get(input.name)
     old.delete(input.name)
     if (!box) { form.lastChild.before(input.parentElement); continue }
-    if (box === focusIn(form)) { continue }
-    if (box.value === box.defaultValue) { box.value = input.value }
+    if (box.value === box.defaultValue && box.value !== input.value) {
+      box.value = input.value
+      if (box === focusIn(form)) { box.select() }
+    }
     box.defaultValue = input.value
   }
   for (const box of old.values()) { box.parentElement.remove() }

@@ -17,22 +17,24 @@ from ..read.read import BareSource, GltfSource
 from .moves import NewValues
 
 
-def with_faces(rig: Rig, left: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:
-    """Return a rig with only faces that are `left` (m,), some of them turned round (m,).
+def with_faces(rig: Rig, remaining: NDArray[np.bool_], turned: NDArray[np.bool_]) -> Rig:
+    """Return a rig with only faces that are `remaining` (m,), some of them turned round (m,).
 
     In a glTF document, into which it can still be saved, a primitive keeps one face at least.
     """
     faces = np.where(turned[:, None], rig.mesh.faces[:, [0, 2, 1]], rig.mesh.faces)
     source = rig.source
     if isinstance(source, GltfSource):
-        left = left.copy()
+        remaining = remaining.copy()
         for stored in source.faces:
-            if stored.rows.stop > stored.rows.start and not left[stored.rows].any():
-                left[stored.rows.start] = True
+            if stored.rows.stop > stored.rows.start and not remaining[stored.rows].any():
+                remaining[stored.rows.start] = True
     if isinstance(source, GltfSource | BareSource):
-        ends = np.concatenate([[0], np.cumsum(left)])
-        source = replace(source, faces=tuple(_edited(s, left, turned, ends) for s in source.faces))
-    return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces[left]), source=source)
+        ends = np.concatenate([[0], np.cumsum(remaining)])
+        source = replace(
+            source, faces=tuple(_edited(s, remaining, turned, ends) for s in source.faces)
+        )
+    return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces[remaining]), source=source)
 
 
 def with_rescaled(rig: Rig, vertices: NDArray[np.intp]) -> Rig:
@@ -46,9 +48,9 @@ def with_rescaled(rig: Rig, vertices: NDArray[np.intp]) -> Rig:
     return replace(rig, source=replace(source, rescaled=rescaled))
 
 
-def _edited(stored: StoredFaces, left: NDArray, turned: NDArray, ends: NDArray) -> StoredFaces:
+def _edited(stored: StoredFaces, remaining: NDArray, turned: NDArray, ends: NDArray) -> StoredFaces:
     rows = stored.rows
-    is_left, flips = left[rows], turned[rows]
+    is_left, flips = remaining[rows], turned[rows]
     before = stored.turned if stored.turned is not None else np.zeros(len(is_left), bool)
     same = is_left.all() and not flips.any() and stored.turned is None
     return replace(
