@@ -71,7 +71,7 @@ class EditsFile:
             self._uploads.cache.leave(old.key)
         group = self._uploads.cache.begin(len(content), self._uploads)
         path = group.folder / "edits.json"
-        path.write_bytes(content)
+        group.written = path.write_bytes(content)
         group.paths = [path]
         self._group = group
         return KEY + group.key
