@@ -20,7 +20,15 @@ from typing import Any
 from urllib.parse import unquote
 
 from ...errors import CutcellError, FileError
-from ..files import HALVES, Allowance, one_line, read_bytes, whole_characters
+from ..files import (
+    HALVES,
+    LARGEST,
+    Allowance,
+    one_line,
+    read_bytes,
+    regular_file,
+    whole_characters,
+)
 
 MAGIC = b"glTF"
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
@@ -155,6 +163,10 @@ def read_document(path: Path) -> Document:
     files: dict[str, bytes] = {}
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
+    for image in document.items("images"):  # saving copies them
+        file = beside(path, str(image.get("uri", "data:")))
+        if file is not None:
+            regular_file(file, path.parent)
     document.allow()
     return document
 
@@ -218,16 +230,16 @@ def _buffer_bytes(
     else:
         if not isinstance(uri, str):
             raise FileError(f'{user}: "uri" must be text')
-        if uri not in files:
-            files[uri] = read_uri(path, uri, user)
+        if uri not in files or len(files[uri]) < length:
+            files[uri] = read_uri(path, uri, user, length)
         data = files[uri]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]
 
 
-def read_uri(path: Path, uri: Any, user: str) -> bytes:
-    """Return the bytes behind a data URI or a relative file name."""
+def read_uri(path: Path, uri: Any, user: str, most: int = LARGEST) -> bytes:
+    """Return the bytes behind a data URI, or the first `most` of a file in the folder or below."""
     if not isinstance(uri, str):
         raise FileError(f'{user}: "uri" must be text')
     if uri.startswith("data:"):
@@ -243,7 +255,7 @@ def read_uri(path: Path, uri: Any, user: str) -> bytes:
         raise FileError(
             f'{user}: "{uri[:80]}" is not a file in the folder of {path.name} or below it'
         )
-    return read_bytes(file)
+    return read_bytes(regular_file(file, path.parent) or file, max(most, 1))
 
 
 def beside(path: Path, uri: str) -> Path | None:
