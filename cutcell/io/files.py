@@ -107,7 +107,7 @@ def regular_file(file: Path, folder: Path) -> Path | None:
     if S_ISDIR(mode):
         return None
     kind = "a file outside of its folder" if S_ISREG(mode) else "a pipe or a device"
-    raise FileError(f'"{file.name[:80]}" is {kind}, which is not read; put a copy of the file there')
+    raise FileError(f'"{file.name[:80]}" is {kind}, which is not read; put a copy there')
 
 
 def _tried(names: Iterable[str]) -> Iterator[PurePosixPath]:

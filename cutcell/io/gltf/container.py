@@ -31,6 +31,8 @@ from ..files import (
 )
 
 MAGIC = b"glTF"
+HUGE = re.compile(rb"\d[eE]\+?\d{3}|\d{309}")
+"""Numbers that may be infinite for Python, which JSON cannot hold; seldom part of other text."""
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
@@ -85,6 +87,11 @@ class Document:
                 f"{user} refers to {kind}[{index}], but the file has {len(objects)} {kind}"
             )
         return objects[index]
+
+    def append(self, kind: str, item: dict[str, Any]) -> int:
+        """Append an object to a top-level list and return its number."""
+        self.json.setdefault(kind, []).append(item)
+        return len(self.items(kind)) - 1
 
     def view_range(self, view: dict[str, Any], user: str) -> tuple[bytes, int, int]:
         """Return the buffer of a buffer view, and the first byte and the number of those in it."""
@@ -203,6 +210,8 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
             whole = with_whole_names(document)
             warnings += [HALVES] if whole != document else []
             document = whole
+        if HUGE.search(text):
+            json_bytes(document)
     except (ValueError, RecursionError) as e:
         raise FileError(f"its JSON cannot be read: {one_line(e)}") from None
     if not isinstance(document, dict):
