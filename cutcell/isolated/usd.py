@@ -34,7 +34,7 @@ def read_stage(file):
     """Read an opened file's meshes, skeletons and motion."""
     stage = Usd.Stage.Open(str(file))
     for layer in stage.GetUsedLayers():
-        real = Path(layer.realPath or file)
+        real = Path(layer.realPath or file).resolve()
         if real != file and file.parent not in real.parents:
             raise RuntimeError(f"it refers to a file outside of its folder ({real.name})")
     reader = Stage(stage, file)
