@@ -46,7 +46,8 @@ def scene_document(
     if needs_mesh and not len(scene["mesh_names"]):
         has_joints = scene["node_bones"].any()
         hint = ", but a skeleton: give it to the mesh of another file by --skeleton"
-        raise FileError(f"has no mesh{hint if has_joints else ''}")
+        notes = "".join(f". {note}" for note in scene.get("notes", ()))
+        raise FileError(f"has no mesh{hint if has_joints else ''}{notes}")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
     if len(bad):
         name = scene["node_names"][bad[0]]
