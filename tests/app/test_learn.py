@@ -8,6 +8,7 @@ import pytest
 from cutcell.errors import FileError
 from cutcell_app.document import arrival, loading
 from cutcell_app.document.state import PANELS
+from cutcell_app.features.brush.choices import selected
 from cutcell_app.features.brush.strokes import select
 from cutcell_app.features.learn.checked import read_checked
 from cutcell_app.features.learn.controls import this_view
@@ -373,6 +374,37 @@ def test_paint_is_scored_by_what_the_branch_moves(session, loop):
     scores = painted_scores(state)
     assert list(scores) == ["Euclidean", "Cut-cell, any angle"]
     assert scores["Euclidean"] < scores["Cut-cell, any angle"] <= 1
+
+
+@pytest.mark.parametrize("way", ["next", "leave", "back", "unanswered"])
+def test_paint_stays_on_its_step(session, loop, way):
+    state = session.state
+    arrival.arrive(session, "?rig=biped&panel=weights&resolution=16", lambda: None)
+    loop.rest(session)
+    before = np.arange(len(state.rig.mesh.vertices)) < 9
+    select(session, before)
+    state.param.update(brush=True, brush_mode="smooth", brush_radius=0.1)
+    address = session.view.last_sent("address")
+    go(session, 0)
+    loop.rest(session)
+    assert selected(state) is None, "what was selected before the lesson is no paint of its step"
+    assert state.brush_mode == "select"
+    select(session, branch_weights(state, "upper_arm.L") > 0.5)
+    if way != "unanswered":
+        answer(session, "Lift")
+    if way == "leave":
+        go(session, -1)
+    elif way == "back":
+        session.view._listeners["visit"]({"query": address})
+    else:
+        go(session, FALLOFF)
+    loop.rest(session)
+    if way == "leave":
+        assert (state.brush, state.brush_mode, state.brush_radius) == (True, "smooth", 0.1)
+        assert np.array_equal(selected(state), before)
+    else:
+        assert selected(state) is None
+        assert not state.brush
 
 
 def test_a_click_answers_where_a_step_asks_for_one(session, loop, tmp_path):
