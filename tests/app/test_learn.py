@@ -28,6 +28,7 @@ from cutcell_app.features.learn.steps import (
     pressed_offers,
 )
 from cutcell_app.features.scenes import resolve
+from cutcell_app.headless.lesson_page import Recording
 from cutcell_app.shell import keys
 from cutcell_app.shell.begin import begin
 from cutcell_app.shell.character import about
@@ -529,6 +530,34 @@ def test_a_wrong_step_names_file_line_and_key(tmp_path, text, message):
     file.write_text(text, encoding="latin-1" if message is None else "utf-8")
     with pytest.raises(FileError, match=message or "cannot be read"):
         read_checked(file)
+
+
+def test_recorded_steps_have_the_cameras_and_the_motions_of_their_addresses(tmp_path):
+    """A step without a camera begins with the whole character, whatever was seen before it."""
+    scenes = [
+        "panel=pose&camera=1,2,3,0,1,0",
+        "panel=compare&methods=artist,euclidean&playing=1",
+        "panel=distance&wave=1&playing=1",
+        "panel=weights&camera=3,2,1,0,1,0",
+    ]
+    file = tmp_path / "cameras.md"
+    steps = (GOOD.replace("panel=graph", f"rig=rabbit&resolution=16&{one}") for one in scenes)
+    file.write_text("".join(steps))
+    recording = Recording(read(file))
+    try:
+        for index in range(len(scenes)):
+            recording.record(index)
+    finally:
+        recording.recorder.close()
+    for scene, record in zip(scenes, recording.records, strict=True):
+        wanted = scene.partition("camera=")[2]
+        for view in record["views"].values():
+            message = view["messages"][0]
+            now = message["camera"].get("now")
+            seen = [] if now is None else [*now["position"], *now["focal_point"]]
+            assert seen == ([float(x) for x in wanted.split(",")] if wanted else [])
+            assert bool(message.get("playing")) == ("compare" in scene)
+            assert bool(message.get("animation")) == ("wave" in scene)
 
 
 def test_a_lesson_is_a_folder_or_one_file_of_steps(tmp_path):
