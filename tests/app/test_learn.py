@@ -517,6 +517,12 @@ answer: {kind: number, expected: 1}
         (GOOD.replace("expected: 1", "expected: x"), "line 5, answer.expected: must be a number"),
         (GOOD.replace("{kind: number, expected: 1}", "yes please"), "line 5, answer: must be"),
         (GOOD.replace("number, expected: 1", "choice"), "line 5, answer.options: .* two options"),
+        (GOOD.replace("number, expected: 1", "choice, options: [Yes, No]"), "line 5, .* in quotes"),
+        (
+            GOOD.replace("number, expected: 1", 'choice, options: ["Yes", "No"], expected: Yes'),
+            "line 5, answer.expected: .* in quotes",
+        ),
+        (GOOD.replace("answer:", "offers: {Yes: panel=pose}\nanswer:"), "line 5, .* in quotes"),
         (GOOD.replace("panel=graph", "kitchen=1"), "line 4, address: .* have kitchen=1"),
         (GOOD + GOOD.replace("panel=graph", "panel=x"), "line 10, address: .* have panel=x"),
         (GOOD.replace("answer:", "offers: {A: panel=no}\nanswer:"), "line 5, offers.A: "),
