@@ -35,6 +35,8 @@ MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
+FarPart = tuple[NDArray[np.intp], int, int]
+"""Its vertices, the joint that it follows and the nearest one."""
 SHARED = 0.1
 """A part moves with the body that it touches if that gives more weight to the part's joint."""
 
@@ -234,7 +236,10 @@ def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
 
 
 def _moves_with_the_body(
-    subject: Subject, far: list[tuple[NDArray[np.intp], int, int]], part: NDArray[np.intp], joint: int
+    subject: Subject,
+    far: list[tuple[NDArray[np.intp], int, int]],
+    part: NDArray[np.intp],
+    joint: int,
 ) -> bool:
     """Return whether the body that a part touches follows the joint of the part."""
     on_body = np.zeros(len(subject.points), bool)

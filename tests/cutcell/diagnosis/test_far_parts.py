@@ -82,7 +82,7 @@ def test_a_part_that_may_not_follow_the_nearest_is_no_fault():
 
 
 def test_a_part_that_moves_with_the_body_it_touches_is_no_fault():
-    rig, part = with_part([0.9, 0.15, 0.0], 1)
+    rig, _ = with_part([0.9, 0.15, 0.0], 1)
     weights = np.zeros_like(rig.weights)
     weights[:, 1] = 1  # the whole body follows a joint at its other end
     assert "far-parts" not in cutcell.diagnose(rig.with_weights(weights), 24, only_weights=True)
