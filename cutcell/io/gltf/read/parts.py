@@ -1,8 +1,9 @@
-"""The meshes of a glTF document by name: those bound, those hidden, those left out."""
+"""What is left of a glTF document: meshes that are hidden, left out, and what is not read."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -12,8 +13,34 @@ from ..container import Document, extensions
 from ..nodes import Nodes
 from .primitives import drawn_primitives
 
+READ = re.compile(
+    "KHR_(mesh_quantization|animation_pointer|node_visibility)|VRM.*|"
+    "[A-Z]+_(materials?|textures?|images?|lights?)_.*"
+)
+"""Extensions that are read, or change neither shapes, skins nor motion."""
 OUTSIDE = "is outside of the scene"
 NO_JOINT = "has no skin and hangs on no joint"
+
+
+def unread(document: Document) -> Iterator[str]:
+    """Yield a sentence for each kind of what is not read."""
+    required = document.json.get("extensionsRequired")
+    names = [str(n) for n in required if not READ.fullmatch(str(n))] if required else []
+    if names:
+        yield (
+            f"extensions that the file requires are not read ({listed(names)}): what they add or "
+            "change is missing, and stays in a saved document"
+        )
+    morphed = [
+        document.label("meshes", m)
+        for m, mesh in enumerate(document.items("meshes"))
+        if any("targets" in primitive for primitive in mesh.get("primitives", ()))
+    ]
+    if morphed:
+        yield (
+            f"morph targets are not read ({listed(morphed)}): meshes are bound without them, and "
+            "they stay in a saved document"
+        )
 
 
 def mesh_name(document: Document, nodes: Nodes, node: int) -> str:

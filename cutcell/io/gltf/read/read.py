@@ -20,18 +20,19 @@ from ..nodes import Nodes
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
-from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes
 from .primitives import (
     StoredFaces,
     attributes,
     drawn_primitives,
+    primitives,
     read_faces,
     read_positions,
     read_triangles,
     read_weights,
 )
+from .seams import closed_seams
 from .skins import Bind, check_unused, read_bind, read_skeleton
-from .unread import unread
 
 VERTEX_NAMES = ("POSITION", "JOINTS_", "WEIGHTS_")
 """Attributes of a vertex buffer; primitives that share them draw from the same."""
@@ -116,14 +117,14 @@ def read_rig(
         if bones is None:
             return read_bare(document, nodes, path.stem, why)
         bind, skinned = bones, _skinned_nodes(nodes)
-    check_unused(document, bind.skins)
+    check_unused(document, bind)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
     skinned = _skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = _mesh(document, stored, bind)
     shape = len(mesh.vertices), len(bind.nodes)
     weights, sums = _dense(document, parts, stored.weights, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
@@ -176,10 +177,9 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
     stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = _mesh(document, stored, bind)
     left_out = left_out_meshes(document, nodes, placed, ())
-    check_unused(document, ())  # which saving with a skeleton reads, and clips as well
-    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))
+    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))  # as saving does
     document.forget()
     return Rig(
         mesh,
@@ -256,6 +256,16 @@ def _read_parts(
             hides = i in hidden or (is_bare and vanishes(nodes, i))
             named.append(Part(mesh_name(document, nodes, i), rows, hides))
     return stored._replace(parts=list(parts.values()))
+
+
+def _mesh(document: Document, stored: _Stored, bind: Bind) -> TriangleMesh:
+    vertices, faces = np.concatenate(stored.vertices), np.concatenate(stored.faces)
+    grids = []
+    for part in stored.parts:
+        mesh, k = part.primitives[0]
+        named = primitives(document, mesh, part.label)[k]["attributes"]
+        grids.append((document.accessors[named["POSITION"]], bind.to_rig[part.skin]))
+    return TriangleMesh(closed_seams(vertices, faces, grids), faces)  # type: ignore[arg-type]
 
 
 def _dense(
