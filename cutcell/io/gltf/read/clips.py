@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ....errors import FileError
 from ....rig.clip import Clip
-from ....runtime.display import listed
 from ..constants import CUBICSPLINE, INTERPOLATIONS, LINEAR, STEP
 from ..container import Document
 from ..nodes import Nodes, compose, node_shifts, target_of
@@ -47,12 +46,6 @@ def read_clips(
             name = animation.get("name")
             name = name if isinstance(name, str) and name else f"clip {i}"
             clips.append(Clip(name, motion=Channels(label, tree, tracks, max(duration, 0.0))))
-    paths = {str(target_of(channel)[1]) for one in animations for channel in one["channels"]}
-    if pointers := sorted(path[:80] for path in paths if path.startswith("/")):
-        document.warnings.append(
-            f"animations of other properties than those of nodes are not read ({listed(pointers)})"
-            "; they stay in a saved document"
-        )
     return tuple(clips)
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 
 from ....rig import Attachment, LeftOut
 from ....runtime.display import listed
 from ..container import Document, extensions
-from ..nodes import Nodes
+from ..nodes import Nodes, target_of
 from .primitives import drawn_primitives
 
 READ = re.compile(
@@ -22,25 +22,24 @@ OUTSIDE = "is outside of the scene"
 NO_JOINT = "has no skin and hangs on no joint"
 
 
-def unread(document: Document) -> Iterator[str]:
-    """Yield a sentence for each kind of what is not read."""
-    required = document.json.get("extensionsRequired")
-    names = [str(n) for n in required if not READ.fullmatch(str(n))] if required else []
-    if names:
-        yield (
-            f"extensions that the file requires are not read ({listed(names)}): what they add or "
-            "change is missing, and stays in a saved document"
-        )
-    morphed = [
-        document.label("meshes", m)
-        for m, mesh in enumerate(document.items("meshes"))
-        if any("targets" in primitive for primitive in mesh.get("primitives", ()))
+def unread(document: Document) -> list[str]:
+    """Return a sentence for each kind of what is not read; channels are checked."""
+    required = document.json.get("extensionsRequired") or ()
+    paths = {str(target_of(c)[1])[:80] for a in document.items("animations") for c in a["channels"]}
+    kinds = {
+        "required extensions": [str(name) for name in required if not READ.fullmatch(str(name))],
+        "morph targets": [
+            document.label("meshes", m)
+            for m, mesh in enumerate(document.items("meshes"))
+            if any("targets" in primitive for primitive in mesh.get("primitives", ()))
+        ],
+        "animations of other properties than nodes have": sorted(p for p in paths if p[:1] == "/"),
+    }
+    return [
+        f"{kind} are not read ({listed(names)}): what they change is missing, and saved as it was"
+        for kind, names in kinds.items()
+        if names
     ]
-    if morphed:
-        yield (
-            f"morph targets are not read ({listed(morphed)}): meshes are bound without them, and "
-            "they stay in a saved document"
-        )
 
 
 def mesh_name(document: Document, nodes: Nodes, node: int) -> str:

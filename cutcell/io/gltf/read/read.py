@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
-from ..buffer import check_ranges
+from ..buffer import ranges_in
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
+from .accessors import Accessor
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
@@ -25,7 +26,6 @@ from .primitives import (
     StoredFaces,
     attributes,
     drawn_primitives,
-    primitives,
     read_faces,
     read_positions,
     read_triangles,
@@ -82,13 +82,13 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
     with malformed():
         document = plain_document(path)
-        document.warnings += unread(document)
-        if not bare or _skinned_nodes(Nodes(document)):
-            rig = read_rig(document, path, accessories=accessories, has_bones=True)
-        else:
+        if bare and not _skinned_nodes(Nodes(document)):
             rig = read_bare(document, Nodes(document), path.stem)
-        check_ranges(document.json, document.buffers)  # saving copies them all
-        return rig
+        else:
+            rig = read_rig(document, path, accessories=accessories, has_bones=True)
+        for owner in ranges_in(document.json):  # which saving copies
+            document.view_range(owner, "a buffer view")
+        return replace(rig, warnings=(*unread(document), *rig.warnings))
 
 
 def read_rig(
@@ -124,7 +124,7 @@ def read_rig(
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
-    mesh = _mesh(document, stored, bind)
+    mesh = stored.mesh()
     shape = len(mesh.vertices), len(bind.nodes)
     weights, sums = _dense(document, parts, stored.weights, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
@@ -177,7 +177,7 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
     stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
-    mesh = _mesh(document, stored, bind)
+    mesh = stored.mesh()
     left_out = left_out_meshes(document, nodes, placed, ())
     read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))  # as saving does
     document.forget()
@@ -209,6 +209,11 @@ class _Stored(NamedTuple):
     faces: list[NDArray]
     drawn: list[StoredFaces]
     named: list[Part]
+    grids: list[tuple[Accessor, NDArray]]  # of the vertices; see `closed_seams`
+
+    def mesh(self) -> TriangleMesh:
+        vertices, faces = np.concatenate(self.vertices), np.concatenate(self.faces)
+        return TriangleMesh(closed_seams(vertices, faces, self.grids), faces)  # type: ignore[arg-type]
 
 
 def _read_parts(
@@ -219,7 +224,8 @@ def _read_parts(
     A mesh with two skins is read for the first: both draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
+    stored = _Stored([], [], [], [], [], [], [])
+    _, vertices, weights, faces, drawn, named, grids = stored
     hidden = hidden_nodes(nodes)
     read_meshes: set[int] = set()
     total = triangles = 0
@@ -243,6 +249,8 @@ def _read_parts(
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(moved(positions, bind.to_rig[skin]))
                 weights.append(read)
+                accessor = document.accessors[primitive["attributes"]["POSITION"]]
+                grids.append((accessor, bind.to_rig[skin]))
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:
@@ -256,16 +264,6 @@ def _read_parts(
             hides = i in hidden or (is_bare and vanishes(nodes, i))
             named.append(Part(mesh_name(document, nodes, i), rows, hides))
     return stored._replace(parts=list(parts.values()))
-
-
-def _mesh(document: Document, stored: _Stored, bind: Bind) -> TriangleMesh:
-    vertices, faces = np.concatenate(stored.vertices), np.concatenate(stored.faces)
-    grids = []
-    for part in stored.parts:
-        mesh, k = part.primitives[0]
-        named = primitives(document, mesh, part.label)[k]["attributes"]
-        grids.append((document.accessors[named["POSITION"]], bind.to_rig[part.skin]))
-    return TriangleMesh(closed_seams(vertices, faces, grids), faces)  # type: ignore[arg-type]
 
 
 def _dense(

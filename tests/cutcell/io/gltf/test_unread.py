@@ -35,7 +35,7 @@ def test_extensions_that_a_file_requires_are_reported_if_they_are_not_read(loade
         "EXT_lights_image_based", "VRMC_vrm", "FUTURE_curves",
     ]  # fmt: skip
     (warning,) = [text for text in loaded(builder).warnings if "extensions" in text]
-    assert warning.startswith("extensions that the file requires are not read (FUTURE_curves)")
+    assert warning.startswith("required extensions are not read (FUTURE_curves)")
 
 
 def far_view(builder):
