@@ -48,11 +48,6 @@ class Accessor:
     def __len__(self) -> int:
         return self.base.count
 
-    @property
-    def one(self) -> int:
-        """The stored integer that stands for one."""
-        return np.iinfo(self.base.dtype).max if self.normalized else 1
-
     def stored(self) -> NDArray:
         """Return all elements in the stored type, shape (count, width)."""
         values = self.base.array()
@@ -68,7 +63,7 @@ class Accessor:
             with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
                 return values.astype(np.float64)
         if self.normalized:
-            return np.maximum(values.astype(np.float64) / self.one, -1.0)
+            return np.maximum(values.astype(np.float64) / np.iinfo(self.base.dtype).max, -1.0)
         return values
 
 

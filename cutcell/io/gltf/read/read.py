@@ -14,10 +14,10 @@ from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
 from ..buffer import ranges_in
+from ..constants import FLOAT, ROUNDED
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
-from .accessors import Accessor
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
@@ -209,7 +209,7 @@ class _Stored(NamedTuple):
     faces: list[NDArray]
     drawn: list[StoredFaces]
     named: list[Part]
-    grids: list[tuple[Accessor, NDArray]]  # of the vertices; see `closed_seams`
+    grids: dict[tuple[int, bytes], list[NDArray]]  # see `closed_seams`
 
     def mesh(self) -> TriangleMesh:
         vertices, faces = np.concatenate(self.vertices), np.concatenate(self.faces)
@@ -224,7 +224,7 @@ def _read_parts(
     A mesh with two skins is read for the first: both draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    stored = _Stored([], [], [], [], [], [], [])
+    stored = _Stored([], [], [], [], [], [], {})
     _, vertices, weights, faces, drawn, named, grids = stored
     hidden = hidden_nodes(nodes)
     read_meshes: set[int] = set()
@@ -249,8 +249,12 @@ def _read_parts(
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(moved(positions, bind.to_rig[skin]))
                 weights.append(read)
-                accessor = document.accessors[primitive["attributes"]["POSITION"]]
-                grids.append((accessor, bind.to_rig[skin]))
+                index, to_rig = primitive["attributes"]["POSITION"], bind.to_rig[skin]
+                accessor, by_draco = document.items("accessors")[index], {ROUNDED: True}
+                own = index if accessor.get("extras") == by_draco else -1
+                grid = grids.setdefault((own, to_rig.tobytes()), [])
+                if own >= 0 or accessor["componentType"] != FLOAT:
+                    grid.append(positions * np.linalg.norm(to_rig[:3, :3]))
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:

@@ -1,36 +1,35 @@
-"""Seams between vertex buffers that were rounded to different grids (KHR_mesh_quantization)."""
+"""Seams between vertex buffers that were rounded to grids of their own: quantised, or by Draco."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.triangles import face_edges
 from ....geometry.weld import weld
-from .accessors import Accessor
 
-MAX_ROUNDING = 1e-3
+MAX_STEP = 1e-3
 """Of the longest side; coarser grids are drawn on purpose."""
-MAX_GAP = 2**16
 
 
 def closed_seams(
-    vertices: NDArray, faces: NDArray, grids: Sequence[tuple[Accessor, NDArray]]
+    vertices: NDArray, faces: NDArray, grids: Mapping[tuple[int, bytes], list[NDArray]]
 ) -> NDArray:
     """Return vertices (n, 3) with borders in one place that run along each other within a step.
 
-    Grids are positions as they are stored, and their matrices (4, 4) to the vertices.
+    Grids hold positions as they are stored, in units of the vertices; none of what is exact.
     """
-    integers = [(stored, to) for stored, to in grids if stored.base.dtype.kind != "f"]
-    if len({to.tobytes() for _, to in grids}) < 2 or not integers:
+    values = [np.sort(np.concatenate(stored), axis=0) for stored in grids.values() if stored]
+    if len(grids) < 2 or not values:
         return vertices
-    # Exporters round to fewer bits than they store: all meshes of a file to as many.
-    gaps = [np.diff(np.unique(stored.stored()).astype(int)) for stored, _ in integers]
-    gap = min(one.min(initial=MAX_GAP) for one in gaps)
-    tolerance = gap * max(np.linalg.norm(to[:3, :3]) / stored.one for stored, to in integers)
-    if tolerance > MAX_ROUNDING * np.ptp(vertices, axis=0).max():
+    # Exporters round all meshes of a file to as many bits, fewer than they store.
+    sizes = [max(float((one[-1] - one[0]).max()), 1e-300) for one in values]
+    gaps = [np.diff(one, axis=0) for one in values]
+    parts = [g.min(initial=np.inf, where=g > 0) / s for g, s in zip(gaps, sizes, strict=True)]
+    tolerance = min(parts) * max(sizes)
+    if tolerance > MAX_STEP * np.ptp(vertices, axis=0).max():
         return vertices
     points, index = weld(vertices, 0.0)
     edges, count = np.unique(face_edges(index[faces]), axis=0, return_counts=True)

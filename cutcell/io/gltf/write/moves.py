@@ -40,6 +40,7 @@ class NewValues:
     target: int | None = None  # of the buffer view
 
 
+@np.errstate(over="ignore")  # readers refuse what becomes infinite
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)

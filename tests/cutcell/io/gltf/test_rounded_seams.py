@@ -1,5 +1,6 @@
 """Meshes of one file that are each rounded to a grid of their own stay shut where they were."""
 
+import DracoPy
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -8,6 +9,7 @@ import cutcell
 from cutcell.geometry.triangles import face_edges
 from cutcell.geometry.weld import weld
 from cutcell.io.gltf.container import read_document
+from tests.cutcell.io.gltf.compressed import DRACO, used
 from tests.cutcell.io.gltf.gltf_builder import Builder, moved
 
 RINGS, AROUND, BITS = 13, 24, 14
@@ -118,6 +120,28 @@ def test_weights_cross_the_seam(loaded):
     ring = AROUND * (RINGS // 2)
     upper = parts[ring + AROUND :]
     assert np.abs(np.concatenate([parts[: ring + AROUND], upper[AROUND:]]) - whole).max() < 1e-3
+
+
+def by_draco(parts, bits):
+    """Return a builder with a mesh for each of the parts, compressed by Draco."""
+    builder = document(parts, "f4")
+    for mesh, (vertices, faces) in zip(builder.json["meshes"], parts, strict=True):
+        (primitive,) = mesh["primitives"]
+        data = DracoPy.encode(vertices, faces, quantization_bits=bits, preserve_order=True)
+        extension = {"bufferView": builder.view(data), "attributes": {"POSITION": 0}}
+        primitive["extensions"] = {DRACO: extension}
+        builder.json["accessors"][primitive["attributes"]["POSITION"]].pop("bufferView")
+        builder.json["accessors"][primitive["indices"]].pop("bufferView")
+    used(builder, DRACO)
+    return builder
+
+
+@pytest.mark.parametrize("bits", [12, 14, 18])
+def test_draco_rounds_each_mesh_to_a_grid_of_its_own(loaded, tmp_path, bits):
+    rig = loaded(by_draco(list(halves()), bits))
+    assert open_edges(rig.mesh) == 0
+    cutcell.save(tmp_path / "out.glb", rig)
+    assert_array_equal(cutcell.load(tmp_path / "out.glb").mesh.vertices, rig.mesh.vertices)
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-2])
