@@ -250,10 +250,7 @@ def read_uri(path: Path, uri: Any, user: str, most: int | None = None) -> bytes:
 
 
 def beside(path: Path, uri: str) -> Path | None:
-    """Return the file that a URI names, None outside of the folder: strangers send documents.
-
-    It need not be there, but must be a regular file if it is.
-    """
+    """Return the file that a URI names, regular or not there; None outside of the folder."""
     name = PurePosixPath(unquote(uri))
     outside = name.is_absolute() or ".." in name.parts or ":" in str(name) or "\\" in str(name)
     if outside or "\0" in str(name) or not name.parts:

@@ -130,7 +130,7 @@ def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
         for channel in channels if isinstance(channels, list) else ():
             if isinstance(channel, dict) and isinstance(channel.get("target"), dict):
                 node, path = target_of(channel)
-                (morphed if path == "weights" else moved).add(node)
+                (morphed if path == "weights" else moved).add(node if type(node) is int else -1)
     rigid = [i for i in meshes if set(nodes.with_ancestors([i])) & moved]
     if rigid:
         names = listed([mesh_name(document, nodes, i) for i in rigid])

@@ -31,7 +31,7 @@ def unread(document: Document) -> list[str]:
         "morph targets": [
             document.label("meshes", m)
             for m, mesh in enumerate(document.items("meshes"))
-            if any("targets" in primitive for primitive in mesh.get("primitives", ()))
+            if any(primitive.get("targets") for primitive in mesh.get("primitives", ()))
         ],
         "animations of other properties than nodes have": sorted(p for p in paths if p[:1] == "/"),
     }
