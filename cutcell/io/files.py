@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
-from stat import S_ISDIR, S_ISREG
 
 from ..errors import CutcellError, FileError
 from ..runtime.writing import reason
@@ -94,19 +93,17 @@ def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LAR
 def regular_file(file: Path, folder: Path) -> Path | None:
     """Return a file without the links that lead to it, None where no file is.
 
-    Folders come from strangers: a link out of the folder, a pipe and a device are refused, and
-    must be before they are opened.
+    Strangers send folders: a link out of it, a pipe and a device are refused, before they are open.
     """
     try:
         real = file.resolve(strict=True)
-        mode, is_inside = real.stat().st_mode, real.is_relative_to(folder.resolve())
     except (OSError, ValueError, RuntimeError):  # too long a name; links in a circle
         return None
-    if S_ISREG(mode) and is_inside:
-        return real
-    if S_ISDIR(mode):
+    if real.is_dir():
         return None
-    kind = "a file outside of its folder" if S_ISREG(mode) else "a pipe or a device"
+    if real.is_file() and real.is_relative_to(folder.resolve()):
+        return real
+    kind = "a file outside of its folder" if real.is_file() else "a pipe or a device"
     raise FileError(f'"{file.name[:80]}" is {kind}, which is not read; put a copy there')
 
 

@@ -38,7 +38,8 @@ MAX_CANDIDATES = 256
 class BoundSkin:
     """The joints of a skin, as they were bound and as their nodes are."""
 
-    inverse: NDArray[np.float64]  # (j, 4, 4): inverse bind matrices; `mend` replaces some
+    inverse: NDArray[np.float64]
+    """(j, 4, 4): inverse bind matrices, zeros where there is none; `mend` replaces some."""
     shares: NDArray[np.float64]  # (j,): the sum of the vertices' weights on each joint
     world: NDArray[np.float64]  # (j, 4, 4): of the joints' nodes
     relative: NDArray[np.float64]
@@ -48,7 +49,6 @@ class BoundSkin:
     corners: NDArray[np.float64]  # (2, 3): of the box around the vertices
     nodes: list[int]  # of the joints
     has_binds: bool = True  # inverse bind matrices; without them joints are at their nodes
-    stored: int | None = None  # how many joints have one; the others may hold vertices, too
     mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
     """Positions of those of them that stay where their matrix was."""
@@ -67,8 +67,7 @@ class BoundSkin:
         distance = np.linalg.norm(self.frames[:, :3, 3], axis=1)
         self.is_at_origin = self.is_solvable & (distance <= ORIGIN * size)
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
-        self.is_held = self.shares > 0
-        self.is_held[self.stored :] = False
+        self.is_held = (self.shares > 0) & self.inverse.any(axis=(1, 2))
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
         shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
         trusted = self.is_held & shows

@@ -20,19 +20,10 @@ from typing import Any
 from urllib.parse import unquote
 
 from ...errors import CutcellError, FileError
-from ..files import (
-    HALVES,
-    LARGEST,
-    Allowance,
-    one_line,
-    read_bytes,
-    regular_file,
-    whole_characters,
-)
+from ..files import HALVES, Allowance, one_line, read_bytes, regular_file, whole_characters
 
 MAGIC = b"glTF"
-HUGE = re.compile(rb"\d[eE]\+?\d{3}|\d{309}")
-"""Numbers that may be infinite for Python, which JSON cannot hold; seldom part of other text."""
+HUGE = re.compile(rb"\d[eE]\+?\d{3}|\d{309}")  # numbers that may become infinite
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
@@ -87,11 +78,6 @@ class Document:
                 f"{user} refers to {kind}[{index}], but the file has {len(objects)} {kind}"
             )
         return objects[index]
-
-    def append(self, kind: str, item: dict[str, Any]) -> int:
-        """Append an object to a top-level list and return its number."""
-        self.json.setdefault(kind, []).append(item)
-        return len(self.items(kind)) - 1
 
     def view_range(self, view: dict[str, Any], user: str) -> tuple[bytes, int, int]:
         """Return the buffer of a buffer view, and the first byte and the number of those in it."""
@@ -171,9 +157,7 @@ def read_document(path: Path) -> Document:
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
     for image in document.items("images"):  # saving copies them
-        file = beside(path, str(image.get("uri", "data:")))
-        if file is not None:
-            regular_file(file, path.parent)
+        beside(path, str(image.get("uri", "data:")))
     document.allow()
     return document
 
@@ -237,18 +221,16 @@ def _buffer_bytes(
             raise FileError(f"{user} has no data: neither a uri nor a binary chunk")
         data = binary
     else:
-        if not isinstance(uri, str):
-            raise FileError(f'{user}: "uri" must be text')
-        if uri not in files or len(files[uri]) < length:
-            files[uri] = read_uri(path, uri, user, length)
-        data = files[uri]
+        if len(files.get(str(uri), b"")) < max(length, 1):
+            files[str(uri)] = read_uri(path, uri, user, length)
+        data = files[str(uri)]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]
 
 
-def read_uri(path: Path, uri: Any, user: str, most: int = LARGEST) -> bytes:
-    """Return the bytes behind a data URI, or the first `most` of a file in the folder or below."""
+def read_uri(path: Path, uri: Any, user: str, most: int | None = None) -> bytes:
+    """Return the bytes behind a data URI, or the first `most` behind a relative file name."""
     if not isinstance(uri, str):
         raise FileError(f'{user}: "uri" must be text')
     if uri.startswith("data:"):
@@ -264,16 +246,18 @@ def read_uri(path: Path, uri: Any, user: str, most: int = LARGEST) -> bytes:
         raise FileError(
             f'{user}: "{uri[:80]}" is not a file in the folder of {path.name} or below it'
         )
-    return read_bytes(regular_file(file, path.parent) or file, max(most, 1))
+    return read_bytes(file, most)
 
 
 def beside(path: Path, uri: str) -> Path | None:
-    """Return the file that a URI names, None outside of the folder: strangers send documents."""
+    """Return the file that a URI names, regular or not there; None outside of the folder."""
     name = PurePosixPath(unquote(uri))
     outside = name.is_absolute() or ".." in name.parts or ":" in str(name) or "\\" in str(name)
     if outside or "\0" in str(name) or not name.parts:
         return None
-    return path.parent.joinpath(*name.parts)
+    file = path.parent.joinpath(*name.parts)
+    regular_file(file, path.parent)
+    return file
 
 
 def with_whole_names(document: dict[str, Any]) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -152,26 +152,14 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
 
 
 def target_of(channel: dict[str, Any]) -> tuple[Any, Any]:
-    """Return the node and the property that a channel moves; no node and another pointer.
-
-    `KHR_animation_pointer` names properties of nodes, too.
-    """
+    """Return the node and the property that a channel moves; None and any other pointer."""
     target = channel["target"]
     extension = extensions(target).get("KHR_animation_pointer")
-    pointer = extension.get("pointer") if isinstance(extension, dict) else None
-    if not isinstance(pointer, str):
+    if not isinstance(extension, dict):
         return target.get("node"), target.get("path")
+    pointer = str(extension.get("pointer"))
     match = NODE_POINTER.fullmatch(pointer)
     return (int(match[1]), match[2]) if match else (None, pointer)
-
-
-def targets(document: Document) -> Iterator[tuple[Any, Any]]:
-    """Yield what `target_of` returns for each channel of a document that may be malformed."""
-    for clip in document.items("animations"):
-        channels = clip.get("channels")
-        for channel in channels if isinstance(channels, list) else ():
-            if isinstance(channel, dict) and isinstance(channel.get("target"), dict):
-                yield target_of(channel)
 
 
 def node_shifts(

@@ -128,10 +128,7 @@ def _tracks(
     document: Document, place: dict[int, int], animation: dict[str, Any], label: str,
     key_times: dict[Any, NDArray[np.float64]],
 ) -> list[Track]:  # fmt: skip
-    """Return the channels that move a node of a subtree, by their keys, which are cached.
-
-    What saving needs of the others is checked.
-    """
+    """Return the channels that move a node of a subtree, by their keys, and check the others."""
     channels, samplers = animation.get("channels"), animation.get("samplers")
     if not isinstance(channels, list) or not isinstance(samplers, list):
         raise FileError(f'{label}: needs "channels" and "samplers"')

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ....errors import FileError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
-from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES, WIDTHS
+from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, ROUNDED, TRIANGLES, WIDTHS
 from ..container import Document, extensions, read_document, whole
 from .accessors import component
 from .primitives import attributes, primitives
@@ -202,6 +202,8 @@ class _Unpacking:
             self.writer.accessors.append(accessor := dict(accessor))
             index = len(self.writer.accessors) - 1
         self.filled[index] = key
+        if key[1] == "POSITION":
+            accessor.setdefault("extras", {ROUNDED: True})
         values = _typed(values, accessor, name)
         target = ELEMENT_ARRAY_BUFFER if key[1] == "indices" else ARRAY_BUFFER
         self.writer.append(accessor, values, target)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
-from ..buffer import check_ranges
+from ..buffer import ranges_in
+from ..constants import FLOAT, ROUNDED
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
-from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes
 from .primitives import (
     StoredFaces,
     attributes,
@@ -30,8 +31,8 @@ from .primitives import (
     read_triangles,
     read_weights,
 )
+from .seams import closed_seams
 from .skins import Bind, check_unused, read_bind, read_skeleton
-from .unread import unread
 
 VERTEX_NAMES = ("POSITION", "JOINTS_", "WEIGHTS_")
 """Attributes of a vertex buffer; primitives that share them draw from the same."""
@@ -81,13 +82,13 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
     with malformed():
         document = plain_document(path)
-        document.warnings += unread(document)
-        if not bare or _skinned_nodes(Nodes(document)):
-            rig = read_rig(document, path, accessories=accessories, has_bones=True)
-        else:
+        if bare and not _skinned_nodes(Nodes(document)):
             rig = read_bare(document, Nodes(document), path.stem)
-        check_ranges(document.json, document.buffers)  # saving copies them all
-        return rig
+        else:
+            rig = read_rig(document, path, accessories=accessories, has_bones=True)
+        for owner in ranges_in(document.json):  # which saving copies
+            document.view_range(owner, "a buffer view")
+        return replace(rig, warnings=(*unread(document), *rig.warnings))
 
 
 def read_rig(
@@ -116,14 +117,14 @@ def read_rig(
         if bones is None:
             return read_bare(document, nodes, path.stem, why)
         bind, skinned = bones, _skinned_nodes(nodes)
-    check_unused(document, bind.skins)
+    check_unused(document, bind)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
     skinned = _skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = stored.mesh()
     shape = len(mesh.vertices), len(bind.nodes)
     weights, sums = _dense(document, parts, stored.weights, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
@@ -176,10 +177,9 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
     stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = stored.mesh()
     left_out = left_out_meshes(document, nodes, placed, ())
-    check_unused(document, ())  # which saving with a skeleton reads, and clips as well
-    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))
+    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))  # as saving does
     document.forget()
     return Rig(
         mesh,
@@ -209,6 +209,11 @@ class _Stored(NamedTuple):
     faces: list[NDArray]
     drawn: list[StoredFaces]
     named: list[Part]
+    grids: dict[tuple[int, bytes], list[NDArray]]  # see `closed_seams`
+
+    def mesh(self) -> TriangleMesh:
+        vertices, faces = np.concatenate(self.vertices), np.concatenate(self.faces)
+        return TriangleMesh(closed_seams(vertices, faces, self.grids), faces)  # type: ignore[arg-type]
 
 
 def _read_parts(
@@ -219,7 +224,8 @@ def _read_parts(
     A mesh with two skins is read for the first: both draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
+    stored = _Stored([], [], [], [], [], [], {})
+    _, vertices, weights, faces, drawn, named, grids = stored
     hidden = hidden_nodes(nodes)
     read_meshes: set[int] = set()
     total = triangles = 0
@@ -243,6 +249,12 @@ def _read_parts(
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(moved(positions, bind.to_rig[skin]))
                 weights.append(read)
+                index, to_rig = primitive["attributes"]["POSITION"], bind.to_rig[skin]
+                accessor, by_draco = document.items("accessors")[index], {ROUNDED: True}
+                own = index if accessor.get("extras") == by_draco else -1
+                grid = grids.setdefault((own, to_rig.tobytes()), [])
+                if own >= 0 or accessor["componentType"] != FLOAT:
+                    grid.append(positions * np.linalg.norm(to_rig[:3, :3]))
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:

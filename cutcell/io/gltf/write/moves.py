@@ -25,7 +25,8 @@ from ..constants import CUBICSPLINE
 from ..container import Document
 from ..nodes import Nodes, node_shifts, target_of
 from ..read.accessors import read_accessor
-from ..read.skins import BINDS
+
+BINDS = "inverseBindMatrices"
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,7 @@ class NewValues:
     target: int | None = None  # of the buffer view
 
 
+@np.errstate(over="ignore")  # readers refuse what becomes infinite
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)
@@ -94,6 +96,8 @@ def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
     count = len(stored["joints"])
     if BINDS in stored:
         values = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
+        missing = np.eye(4).reshape(1, 16).repeat(max(count - len(values), 0), axis=0)
+        values = np.concatenate([values, missing])
         if count == 1 or not (values[:count] == np.eye(4).ravel()).all():
             return values
     raise SkeletonError(
@@ -134,7 +138,7 @@ def _binds(
         values = read_binds(loaded, i)
         for slot, matrix in mended.get(i, {}).items():
             values[slot] = matrix.T.ravel()
-        values[: len(shift), 12:15] -= shift[: len(values)]
+        values[: len(shift), 12:15] -= shift
         replaced.append(NewValues(skin, BINDS, values.astype("<f4"), skin.pop(BINDS)))
     return replaced
 

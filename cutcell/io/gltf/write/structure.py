@@ -18,8 +18,7 @@ from ....errors import SkeletonError
 from ....rig import Rig, with_origin
 from ..nodes import Nodes, target_of
 from ..read.read import GltfSource, StoredPart
-from ..read.skins import BINDS
-from .moves import NewValues, own_moves, read_binds
+from .moves import BINDS, NewValues, own_moves, read_binds
 
 
 def take_structure(

@@ -19,7 +19,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from ....errors import MeshError, SkeletonError, WeightsError
+from ....errors import FileError, MeshError, SkeletonError, WeightsError
 from ....rig import Rig
 from ...materials.gltf_colored import with_surface_looks
 from ...materials.gltf_images import carry_images
@@ -169,9 +169,9 @@ def _buffers_of(path: Path) -> set[str]:
     """Return the real paths of the buffers of a document, if there is a readable one."""
     try:
         document = json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+        return {os.path.realpath(file) for file in _files_of(path, document, ("buffers",))}
+    except (OSError, ValueError, RecursionError, FileError):
         return set()
-    return {os.path.realpath(file) for file in _files_of(path, document, ("buffers",))}
 
 
 def _files_of(

@@ -232,23 +232,24 @@ def test_joints_without_a_matrix_stand_at_their_nodes(loaded, tmp_path, count, o
     places = PLACES + offset
     assert_allclose(rig.skeleton.joints, places, atol=1e-6)
     (warning,) = rig.warnings
-    assert f"has 5 joints but {count} inverse bind matrices" in warning
+    assert f'{5 - count} joints (the first is "{rig.skeleton.names[count]}")' in warning
+    assert "missing" in warning
     joints = places + np.linspace(0, 0.1, 15).reshape(5, 3)
     for end, changed in ((".glb", rig), (".gltf", rig), (".glb", rig.with_joints(joints))):
         cutcell.save(tmp_path / f"out{end}", on_end_and_far(changed))
         again = cutcell.load(tmp_path / f"out{end}")
         assert_allclose(again.skeleton.joints, changed.skeleton.joints, atol=1e-6)
-        assert not any("matrices" in warning for warning in again.warnings)
         world, inverse = matrices(tmp_path / f"out{end}")
         assert len(inverse) == 5
-        assert_allclose(world @ inverse, np.tile(moved(*-np.array(offset)), (5, 1, 1)), atol=1e-6)
+        is_held = again.weights.any(axis=0)
+        assert is_held.sum() == 2
+        assert_allclose((world @ inverse)[is_held], [moved(*-np.array(offset))] * 2, atol=1e-6)
 
 
 def test_with_the_identity_alone_all_joints_stand_at_their_nodes(loaded):
     all_of_them = loaded(limb((0, 1, 2, 3, 4), np.eye(4)))
     rig = loaded(with_fewer(limb((0, 1, 2, 3, 4), np.eye(4)), 2))
     assert_array_equal(rig.skeleton.joints, all_of_them.skeleton.joints)
-    assert "has 5 joints but 2 inverse bind matrices" in rig.warnings[0]
 
 
 def test_joints_are_removed_from_a_skin_with_fewer_matrices(loaded, tmp_path):
