@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
 from functools import wraps
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -47,27 +47,25 @@ def _stdin(context: typer.Context, path: Path | None) -> Path | None:
 
 
 def _stdout(context: typer.Context, path: Path | None) -> Path | None:
-    """Return a GLB in the place of "-" that is written to standard output in the end."""
-    return context.with_resource(_written_to_stdout()) if path == Path("-") else path
-
-
-@contextmanager
-def _written_to_stdout() -> Iterator[Path]:
-    output = sys.stdout
-    with TemporaryDirectory() as folder, redirect_stdout(sys.stderr):
-        yield (path := Path(folder, "stdout.glb"))
-        with output_errors():
-            output.buffer.write(path.read_bytes() if path.exists() else b"")
+    """Return a GLB in the place of "-" that goes to standard output when all else is done."""
+    if path != Path("-"):
+        return path
+    out = Path(context.with_resource(TemporaryDirectory()), "stdout.glb")
+    output = sys.stdout.buffer
+    context.with_resource(redirect_stdout(sys.stderr))
+    context.call_on_close(
+        output_errors()(lambda: output.write(out.read_bytes() if out.exists() else b""))
+    )
+    return out
 
 
 OutFile = Annotated[
     Path,
     typer.Argument(
-        metavar="OUT",
-        help="Output file: a copy of RIG with the new weights, - for a GLB on standard output.",
-        callback=_stdout,
+        metavar="OUT", callback=_stdout,
+        help="Output file: a copy of RIG with the new weights. - is a GLB on standard output.",
     ),
-]
+]  # fmt: skip
 FixFile = Annotated[
     Path | None,
     typer.Option(
