@@ -5,6 +5,7 @@ on the path. In the checkout the page's folder is `app`, and so on.
 """
 
 import re
+import tomllib
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -15,15 +16,28 @@ FOLDERS = {
     "cutcell_lab": "lab",
     "cutcell_viewers": "viewers",
 }
-FILES = "https://raw.githubusercontent.com/cutcell/cutcell/main/"
-PAGES = "https://github.com/cutcell/cutcell/blob/main/"
+ROOT = Path(__file__).parent
+REPOSITORY = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"][
+    "cutcell"
+]["repository"]
 
 
 def readme():
-    """Return README.md with absolute links: on PyPI there is no folder around it."""
-    text = (Path(__file__).parent / "README.md").read_text(encoding="utf-8")
-    text = re.sub(r'((?:src|srcset)="|!\[[^]]*\]\()(?!http)', rf"\1{FILES}", text)
-    return re.sub(r"\]\((?!http|#)", f"]({PAGES}", text)
+    """Return README.md for a package index: its links are absolute or left out."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    if not REPOSITORY:
+        text = re.sub(r"!\[[^]]*\]\((?!http)[^)]*\)\n*", "", text)
+        return re.sub(r"\[([^]]*)\]\((?!http|#)[^)]*\)", r"\1", text)
+    text = re.sub(r"(!\[[^]]*\]\()(?!http)", rf"\1{REPOSITORY}/raw/main/", text)
+    return re.sub(r"\]\((?!http|#)", f"]({REPOSITORY}/blob/main/", text)
+
+
+def urls():
+    """Return the links that a package index shows beside the description."""
+    if not REPOSITORY:
+        return {}
+    changelog, issues = f"{REPOSITORY}/blob/main/CHANGELOG.md", f"{REPOSITORY}/issues"
+    return {"Homepage": REPOSITORY, "Changelog": changelog, "Issues": issues}
 
 
 packages = find_packages(include=["cutcell", "cutcell.*"])
@@ -37,4 +51,5 @@ setup(
     package_dir=FOLDERS,
     long_description=readme(),
     long_description_content_type="text/markdown",
+    project_urls=urls(),
 )

@@ -1,6 +1,7 @@
 """The server of the page."""
 
 import errno
+import secrets
 import signal
 import socket
 import sys
@@ -150,6 +151,8 @@ def begin(
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,
         http_server_kwargs={"max_body_size": MAX_BODY},
+        sign_sessions=True,
+        secret_key=secrets.token_bytes(32),
         title="cutcell",
         show=False,
         start=False,

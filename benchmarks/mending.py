@@ -35,7 +35,7 @@ from .hands import Hands
 DOCUMENT = ROOT / "docs" / "page" / "check.md"
 FIRST = ROOT / "assets" / "robot.glb"
 ADDRESS = "/?resolution=32&graph_resolution=0"
-"""Computed weights lie under the file's and are not exported: coarse ones are soon there."""
+"""A file opens with its own weights: coarse computed ones are soon there."""
 PIXELS = 0.2
 """Pixels of the canvas to one of the page: nothing is done in the scene."""
 MAX_ACTIONS = 10
@@ -48,14 +48,11 @@ def _attach_by_finding(hands: Hands, joint: str) -> None:
     hands.panel("Check")
     hands.press("Parts that follow a far joint")
     hands.press(f"Rigid to {joint}")
-    hands.panel("Weights")
-    hands.base_from_file()
 
 
 def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None = None) -> None:
     """Choose a part of the mesh, and bind it in another way."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.section("Parts of the mesh")
     hands.part(*words)
     hands.choose("Bind this part", way)
@@ -66,7 +63,6 @@ def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None =
 def _change_selection(hands: Hands, bone: str, selection: str, change: str) -> None:
     """Select vertices by a bone, and change their weights."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.choose("Bone", bone)
     hands.section("Selection")
     hands.menu("Select by", selection)
@@ -76,7 +72,6 @@ def _change_selection(hands: Hands, bone: str, selection: str, change: str) -> N
 def _remove_leak(hands: Hands) -> None:
     """Remove the weight of the hand from the thigh; the others share it as before."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.choose("Bone", "Hand.L")
     hands.section("Selection")
     hands.type("Vertices where", 'weight of "Hand.L" > 0 and weight of "UpperLeg.L" > 0')

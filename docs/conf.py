@@ -1,6 +1,8 @@
 """Settings of the documentation site: `make docs`. Nothing is fetched from elsewhere."""
 
+import re
 import sys
+import tomllib
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -64,8 +66,9 @@ html_extra_path = [one_file_pages.PAGES.name]
 copybutton_prompt_text = r">>> |\$ "
 copybutton_prompt_is_regexp = True
 
-CHECKOUT = "https://github.com/cutcell/cutcell/blob/main/"
-
+REPOSITORY = tomllib.loads((DOCS.parent / "pyproject.toml").read_text())["tool"]["cutcell"][
+    "repository"
+]
 
 TEACHING = DOCS / "teaching"
 with ZipFile(TEACHING / "exercises.zip", "w") as archive:
@@ -75,11 +78,12 @@ with ZipFile(TEACHING / "exercises.zip", "w") as archive:
 
 
 def setup(app):
-    """Let links to files outside this folder lead into the repository."""
+    """Let links to files outside this folder lead into the repository, or leave them out."""
 
     def outside(app, name, source):
         if "/" not in name:  # in a folder below, `..` is this one
-            source[0] = source[0].replace("](../", f"]({CHECKOUT}")
+            link = rf"[\1]({REPOSITORY}/blob/main/\2)" if REPOSITORY else r"\1"
+            source[0] = re.sub(r"\[([^]]*)\]\(\.\./([^)]*)\)", link, source[0])
 
     app.connect("source-read", outside)
     app.connect("config-inited", lambda *_: one_file_pages.main(), 100)  # before paths are checked

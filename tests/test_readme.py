@@ -2,6 +2,8 @@
 
 import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -61,3 +63,44 @@ def test_make_targets_that_are_spoken_of_exist():
     }
     assert spoken <= targets
     assert {"app", "test", "lock"} <= spoken
+
+
+PUBLIC = re.compile(r"github\.com/cutcell|cutcell\.github\.io|pypi\.org/project/cutcell")
+"""Addresses that would belong to whoever registers them: see [tool.cutcell] in pyproject.toml."""
+BY_NAME = re.compile(r"""pip install ["']?cutcell\b""")
+"""Works only where cutcell is installed: no index has it."""
+
+
+def test_no_address_of_somebody_else_is_written():
+    files = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True
+    )
+    texts = {
+        name: (ROOT / name).read_text(encoding="utf-8", errors="ignore")
+        for name in files.stdout.splitlines()
+        if name != f"tests/{Path(__file__).name}" and (ROOT / name).is_file()
+    }
+    assert len(texts) > 1000
+    assert [name for name, text in texts.items() if PUBLIC.search(text)] == []
+    documents = [name for name in texts if not name.endswith(".py")]
+    assert [name for name in documents if BY_NAME.search(texts[name])] == []
+
+
+@pytest.mark.parametrize("repository", ["", "https://example.org/somebody/cutcell"])
+def test_links_of_the_package_begin_with_the_repository(repository, tmp_path):
+    for name in ("setup.py", "README.md", "LICENSE", "NOTICE"):
+        shutil.copy(ROOT / name, tmp_path)
+    for name in ("app", "assets", "lab", "viewers"):
+        (tmp_path / name).mkdir()
+    settings = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert settings.count('\nrepository = ""\n') == 1
+    (tmp_path / "pyproject.toml").write_text(
+        settings.replace('\nrepository = ""\n', f'\nrepository = "{repository}"\n'),
+        encoding="utf-8",
+    )
+    code = "from setuptools.build_meta import prepare_metadata_for_build_wheel as p; p('.')"
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, capture_output=True)
+    text = next(tmp_path.glob("cutcell-*.dist-info/METADATA")).read_text(encoding="utf-8")
+    links = re.findall(r"\]\(([^)#]+)", text) + re.findall(r"^Project-URL: \w+, (.*)$", text, re.M)
+    assert (len(links) > 13) == bool(repository)
+    assert [link for link in links if not repository or not link.startswith(repository)] == []

@@ -73,14 +73,6 @@ def test_it_has_the_licences_of_all_that_it_contains(installed):
     assert {path.name for path in licenses.iterdir()} == {"LICENSE", "NOTICE"}
 
 
-def test_its_description_has_no_link_into_a_checkout(installed):
-    text = next(installed.glob("cutcell-*.dist-info/METADATA")).read_text(encoding="utf-8")
-    links = re.findall(r"\]\(([^)]+)\)|(?:src|srcset)=\"([^\"]+)", text)
-    assert len(links) > 10
-    assert [link for pair in links for link in pair if link and link[0] != "#"
-            and not link.startswith("https://")] == []  # fmt: skip
-
-
 def test_all_its_packages_are_typed(installed):
     packages = [path.parent for path in installed.glob("cutcell*/__init__.py")]
     assert len(packages) == len(SOURCES)

@@ -193,13 +193,15 @@ def show_rig(
     state, view = session.state, session.view
     old, session.character = session.character, character
     edits, problem = edits_in(rig)
+    if not edits and rig.weights is not None and character.startswith("~"):
+        edits = Edits(base="file")  # a person's own file is to be mended, a demo to be computed
     before, arrival, session.arrival = state.rig, session.arrival, {}
     # All at once: a menu whose value changes twice in a moment may tell the first one back.
     with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, turns={}, moving=False,
             playing=False, repair=None, edits=replace(edits, method={}), part=None, brush=False,
-            layer=None,
+            layer=None, opening=edits,
             joint_handle=False,
             own=rig,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
@@ -274,7 +276,7 @@ def _correct(session: Session, text: str) -> None:
                 changed["joint"] = first_joint(changed["rig"])
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:
-        state.edits = Edits()
+        state.edits = state.first_edits
         text = f"The edits of this address were not applied: {error}"
         session.notice = ("info", text)
 

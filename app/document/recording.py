@@ -92,7 +92,7 @@ def query(session: Session) -> str:
     if view.camera is not None and not view.at_home:
         camera = [*view.camera.position, *view.camera.focal_point]
     try:
-        edits = session.edits_file.text_of(session.state.edits)
+        edits = session.edits_file.text_of(session.state.edits, session.state.opening)
     except (CutcellError, OSError) as error:
         session.fail(error)
         edits = ""

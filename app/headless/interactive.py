@@ -26,6 +26,7 @@ from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing
 from cutcell_viewers.character import bones
 from cutcell_viewers.description import Description, Legend
+from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
@@ -214,6 +215,7 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
         },
         "sizes": sizes.tolist(),
         "reasons": FALLBACK_REASONS,
+        "unit": unit_of(rig),
     }
 
 

@@ -69,7 +69,7 @@ def lesson_page(lesson: Lesson | None = None, *, progress: Progress = silent) ->
         A character of a step cannot be read or bound.
     """
     lesson = lesson or built_in()
-    recording, rows = _Recording(lesson), []
+    recording, rows = Recording(lesson), []
     try:
         for index, step in enumerate(lesson.steps):
             progress("recording the lesson", index / len(lesson))
@@ -97,7 +97,7 @@ def _row(index: int, step: Step, picture: str) -> str:
     return ROW.format(number=index + 1, picture=picture, alt=html.escape(step.picture), **texts)
 
 
-class _Recording:
+class Recording:
     """Records of all steps: the view before and after the answer, of each button and number."""
 
     def __init__(self, lesson: Lesson) -> None:

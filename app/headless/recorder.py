@@ -28,7 +28,6 @@ class Recorder:
         self._actions: queue.Queue[Callable[[], Any]] = queue.Queue()
         self.session = begin(self._actions.put)
         self._view: Any = self.session.view
-        self._view.calm = True
 
     def close(self) -> None:
         """End the session."""

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from cutcell.editing import Edits
 from cutcell_viewers.camera import FRONT
 
 from ..document.address import defaults
@@ -56,8 +55,8 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = applied(state.own, Edits())
-    changed = {**changes(state, rig, Edits()), **changed_only(state, first)}
+    rig = applied(state.own, state.first_edits)
+    changed = {**changes(state, rig, state.first_edits), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
     session.view.send(home=True)
 

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
 from .console import for_people, print_result, progress_bars
@@ -18,6 +15,7 @@ from .options import (
     LayersFile,
     Lock,
     NoDeform,
+    OutFile,
     Quiet,
     RigFile,
     SkeletonFile,
@@ -70,13 +68,7 @@ GLTF_INFLUENCES = 4
 @with_method()
 def bind(
     rig: RigFile,
-    out: Annotated[
-        Path,
-        typer.Argument(
-            metavar="OUT",
-            help="Output file: a copy of RIG with the new weights.",
-        ),
-    ],
+    out: OutFile,
     options: dict[str, Any],
     smoothing: Smoothing = 0,
     symmetric: Symmetric = False,

@@ -12,7 +12,7 @@ from rich.text import Text
 from ..errors import CutcellError
 from ..runtime.display import count, printable
 from .console import WRONG_INPUT, for_people, print_json, print_warnings, progress_bars
-from .options import FILES, Json, Resolution, RigFile, SkeletonFile
+from .options import FixFile, Json, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
     from ..diagnosis import Diagnosis, Finding
@@ -40,15 +40,7 @@ FEW = 5
 @for_people
 def diagnose(
     rig: RigFile,
-    fix: Annotated[
-        Path | None,
-        typer.Option(
-            "--fix",
-            metavar="OUT",
-            help="Save a copy with all safe repairs; nothing else in it changes.",
-            rich_help_panel=FILES,
-        ),
-    ] = None,
+    fix: FixFile = None,
     resolution: Resolution = 64,
     skeleton: SkeletonFile = None,
     fail_on: Annotated[

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
 from functools import wraps
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from ..runtime.standard_output import output_errors
+from .console import for_people
 
 if TYPE_CHECKING:
     from ..editing import Edits
@@ -31,11 +37,51 @@ def _option(panel: str, flags: str, metavar: str, text: str, show_default: bool 
     )
 
 
+@for_people
+def _stdin(context: typer.Context, path: Path | None) -> Path | None:
+    """Return a file with what is on standard input in the place of "-"."""
+    from ..io.inputs import as_file
+
+    if path != Path("-"):
+        return path
+    return context.with_resource(as_file(getattr(sys.stdin, "buffer", b"")))
+
+
+def _stdout(context: typer.Context, path: Path | None) -> Path | None:
+    """Return a GLB in the place of "-" that is written to standard output in the end."""
+    return context.with_resource(_written_to_stdout()) if path == Path("-") else path
+
+
+@contextmanager
+def _written_to_stdout() -> Iterator[Path]:
+    output = sys.stdout
+    with TemporaryDirectory() as folder, redirect_stdout(sys.stderr):
+        yield (path := Path(folder, "stdout.glb"))
+        with output_errors():
+            output.buffer.write(path.read_bytes() if path.exists() else b"")
+
+
+OutFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="OUT",
+        help="Output file: a copy of RIG with the new weights, - for a GLB on standard output.",
+        callback=_stdout,
+    ),
+]
+FixFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--fix", metavar="OUT", callback=_stdout, rich_help_panel=FILES,
+        help="Save a copy with all safe repairs; nothing else in it changes.",
+    ),
+]  # fmt: skip
 _RIG = typer.Argument(
     metavar="RIG",
+    callback=_stdin,
     help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
     " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
-    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it.",
+    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it. - is standard input.",
 )
 RigFile = Annotated[Path, _RIG]
 OptionalRigFile = Annotated[Path | None, _RIG]

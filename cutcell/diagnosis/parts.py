@@ -15,6 +15,7 @@ from ..graph.winding import winding_number
 from ..rig import TriangleMesh
 from ..runtime.display import count
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
+from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
 from .finding import Finding, found, share
 from .subject import Subject, bones_distance
 
@@ -34,6 +35,10 @@ MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
+FarPart = tuple[NDArray[np.intp], int, int]
+"""Its vertices, the joint that it follows and the nearest one."""
+SHARED = 0.1
+"""A part moves with the body that it touches if that gives more weight to the part's joint."""
 
 
 def check_parts(subject: Subject) -> Iterator[Finding]:
@@ -176,7 +181,10 @@ def _holder(subject: Subject, vertices: NDArray[np.intp]) -> int:
 
 
 def check_far_parts(subject: Subject) -> Iterator[Finding]:
-    """Look for connected components that rigidly follow a joint far from them."""
+    """Look for connected components that rigidly follow a joint far from them.
+
+    One that follows the same joint as the body that it touches is sound, however far its bones are.
+    """
     weights = subject.weights
     label = subject.component[subject.welded]
     sizes = np.bincount(label)
@@ -191,6 +199,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
         if component[part[0]] >= 0 and joint[part[0]] >= 0 and (joint[part] == joint[part[0]]).all()
         if (nearest := _much_nearer(subject, part, int(joint[part[0]]))) >= 0
     ]
+    far = [one for one in far if not _moves_with_the_body(subject, far, *one[:2])]
     if not far:
         return
     far.sort(key=lambda one: -len(one[0]))
@@ -224,3 +233,23 @@ def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
             nearest, least = int(j), float(np.median(away))
     is_far = followed.min() > MIN_AWAY and np.median(followed) - least > BEYOND
     return nearest if is_far else -1
+
+
+def _moves_with_the_body(
+    subject: Subject,
+    far: list[tuple[NDArray[np.intp], int, int]],
+    part: NDArray[np.intp],
+    joint: int,
+) -> bool:
+    """Return whether the body that a part touches follows the joint of the part."""
+    on_body = np.zeros(len(subject.points), bool)
+    on_body[subject.welded[subject.is_used]] = True
+    for other, _, _ in far:  # several may be wrong together
+        on_body[subject.welded[other]] = False
+    if not on_body.any():
+        return False
+    points = subject.points[subject.welded[part]]
+    distance, corners = nearest_on_body(subject.graph, on_body, points)
+    touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
+    of_joint = subject.weights[subject.first, joint]
+    return float(of_joint[corners[touching]].mean()) > SHARED

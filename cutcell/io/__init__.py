@@ -18,6 +18,7 @@ from .gltf.read.read import GltfSource, read_gltf
 from .gltf.write.fresh import check_fits, new_files
 from .gltf.write.skinned import can_be_skinned, skinned
 from .gltf.write.write import rewritten
+from .inputs import Input, as_file
 from .materials.gltf_colored import color_notes
 from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
@@ -38,23 +39,20 @@ AVATAR = ("VRM", "VRMC_vrm")
 """Extensions of a document that make it a VRM."""
 
 
-def load(
-    path: str | os.PathLike[str],
-    skeleton: str | os.PathLike[str] | None = None,
-    accessories: bool = False,
-) -> Rig:
+def load(path: Input, skeleton: Input | None = None, accessories: bool = False) -> Rig:
     """Load a rig.
 
     Parameters
     ----------
-    path : path
+    path : path, bytes or open file
         A GLB, glTF, VRM, FBX or USD file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL
         ``.npz``; or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh
         without a skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken
-        from each.
-    skeleton : path, optional
+        from each. The format of bytes, of a file opened in binary mode and of a pipe is that of
+        their content.
+    skeleton : path, bytes or open file, optional
         A file with the skeleton of a mesh that has no skin: JSON, GLB, glTF, VRM, FBX, USD,
-        RigNet's ``.txt`` or Articulation-XL's ``.npz``.
+        RigNet's ``.txt`` or Articulation-XL's ``.npz``. Its clips come with it.
     accessories : bool
         Whether meshes of a glTF, FBX or USD file that have no skin, such as a sword on a joint,
         become part of the rig's mesh, to be bound with it.
@@ -72,9 +70,8 @@ def load(
         What the file holds cannot be used, or it has a skeleton besides the one that is given.
         Every message names the file.
     """
-    path = Path(path)
-    with naming(path):
-        rig = _load(path, skeleton is not None, accessories)
+    with as_file(path) as file, naming(file):
+        rig = _load(file, skeleton is not None, accessories)
         if skeleton is None:
             return rig
         if len(rig.skeleton.joints):
@@ -82,7 +79,8 @@ def load(
                 f"has a skeleton of its own, of {len(rig.skeleton.joints)} joints; a skeleton file "
                 "is for a mesh without one"
             )
-        return with_skeleton(rig, Path(skeleton))
+        with as_file(skeleton) as donor:
+            return with_skeleton(rig, donor)
 
 
 def _load(path: Path, bare: bool, accessories: bool) -> Rig:

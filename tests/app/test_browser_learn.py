@@ -174,7 +174,7 @@ def test_a_link_shows_the_same_comparison(visit):
     visit.expect_text("difference")
     visit.page.wait_for_function("location.search.includes('minus=euclidean')")
     link, captions = visit.address, visit.page.locator(".caption")
-    expected = ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
+    expected = ["Current weights − Euclidean", "Euclidean − itself"]
     expect(captions).to_have_text(expected)
     visit.go(visit.first[0])
     expect(captions).to_have_count(0)

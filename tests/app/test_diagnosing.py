@@ -161,10 +161,10 @@ def test_what_was_repaired_is_exported(spoiled, loop, tmp_path):
     changed = np.abs(again.weights - state.repair.before.weights).max(axis=1) > 1e-6
     assert np.flatnonzero(changed).tolist() == [0, 1, 2]
     assert uses_file(spoiled)
-    assert changes_of(state) == "3 vertices repaired."
+    assert changes_of(state) == "3 vertices differ from the file: Repaired 3."
     choose_file(spoiled, False)
     loop.run_until(lambda: is_current(spoiled))
-    assert "recomputed" in changes_of(state)
+    assert "Computed" in changes_of(state)
 
 
 def test_another_character_begins_anew(spoiled, loop):

@@ -8,9 +8,8 @@ from urllib.parse import quote
 
 import psutil
 import pytest
-from bokeh.util.token import generate_jwt_token, generate_session_id
 
-from benchmarks.visitors import Visitor
+from benchmarks.visitors import Visitor, token_of
 from cutcell_app.document.session import Session
 from cutcell_app.server import handlers
 from cutcell_app.widgets.modules import ADDRESS, FOLDER
@@ -56,7 +55,7 @@ def get(here, path="/", method="GET", **headers):
 
 def upgrade(here, origin=None, token=None, host=None):
     """Ask for a websocket as no browser could; return the status of the answer."""
-    token = token or generate_jwt_token(generate_session_id())
+    token = token_of(get(here).text) if token is None else token
     lines = [
         "GET /ws HTTP/1.1", f"Host: {host or here.host}", "Connection: Upgrade",
         "Upgrade: websocket", "Sec-WebSocket-Version: 13",
@@ -131,7 +130,7 @@ def test_a_strange_host_is_told_as_text(here):
 
 @pytest.mark.parametrize("token", ["abc", "abc.def", "e30", "%00", "a.b.c"])
 def test_a_token_that_is_none_begins_nothing(here, begun, token):
-    assert upgrade(here, here.address, token) == 101  # and is closed at once
+    assert upgrade(here, here.address, token) == 403
     assert get(here).status == 200
     assert not begun
 
@@ -186,13 +185,14 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
 def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
     wait_until(lambda: not here.sessions)
     monkeypatch.setattr(handlers, "MAX_SESSIONS", 2)
+    token = token_of(get(here).text)
     visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
     assert len(here.sessions) == 2
     answer = get(here)
     assert answer.status == 503
     assert "open pages is reached" in answer.text
     assert get(here, method="HEAD").status == 503
-    assert upgrade(here, here.address) == 503
+    assert upgrade(here, here.address, token) == 503
     visitors[0].close()
     wait_until(lambda: get(here).status == 200)
     visitors[1].close()

@@ -8,6 +8,7 @@ import pytest
 from cutcell.errors import FileError
 from cutcell_app.document import arrival, loading
 from cutcell_app.document.state import PANELS
+from cutcell_app.features.brush.choices import selected
 from cutcell_app.features.brush.strokes import select
 from cutcell_app.features.learn.checked import read_checked
 from cutcell_app.features.learn.controls import this_view
@@ -27,6 +28,7 @@ from cutcell_app.features.learn.steps import (
     pressed_offers,
 )
 from cutcell_app.features.scenes import resolve
+from cutcell_app.headless.lesson_page import Recording
 from cutcell_app.shell import keys
 from cutcell_app.shell.begin import begin
 from cutcell_app.shell.character import about
@@ -375,6 +377,37 @@ def test_paint_is_scored_by_what_the_branch_moves(session, loop):
     assert scores["Euclidean"] < scores["Cut-cell, any angle"] <= 1
 
 
+@pytest.mark.parametrize("way", ["next", "leave", "back", "unanswered"])
+def test_paint_stays_on_its_step(session, loop, way):
+    state = session.state
+    arrival.arrive(session, "?rig=biped&panel=weights&resolution=16", lambda: None)
+    loop.rest(session)
+    before = np.arange(len(state.rig.mesh.vertices)) < 9
+    select(session, before)
+    state.param.update(brush=True, brush_mode="smooth", brush_radius=0.1)
+    address = session.view.last_sent("address")
+    go(session, 0)
+    loop.rest(session)
+    assert selected(state) is None, "what was selected before the lesson is no paint of its step"
+    assert state.brush_mode == "select"
+    select(session, branch_weights(state, "upper_arm.L") > 0.5)
+    if way != "unanswered":
+        answer(session, "Lift")
+    if way == "leave":
+        go(session, -1)
+    elif way == "back":
+        session.view._listeners["visit"]({"query": address})
+    else:
+        go(session, FALLOFF)
+    loop.rest(session)
+    if way == "leave":
+        assert (state.brush, state.brush_mode, state.brush_radius) == (True, "smooth", 0.1)
+        assert np.array_equal(selected(state), before)
+    else:
+        assert selected(state) is None
+        assert not state.brush
+
+
 def test_a_click_answers_where_a_step_asks_for_one(session, loop, tmp_path):
     file = tmp_path / "click.md"
     step = "---\ntitle: T\nquestion: Q\naddress: panel=weights\nanswer: {{kind: {}}}\n---\n"
@@ -484,6 +517,12 @@ answer: {kind: number, expected: 1}
         (GOOD.replace("expected: 1", "expected: x"), "line 5, answer.expected: must be a number"),
         (GOOD.replace("{kind: number, expected: 1}", "yes please"), "line 5, answer: must be"),
         (GOOD.replace("number, expected: 1", "choice"), "line 5, answer.options: .* two options"),
+        (GOOD.replace("number, expected: 1", "choice, options: [Yes, No]"), "line 5, .* in quotes"),
+        (
+            GOOD.replace("number, expected: 1", 'choice, options: ["Yes", "No"], expected: Yes'),
+            "line 5, answer.expected: .* in quotes",
+        ),
+        (GOOD.replace("answer:", "offers: {Yes: panel=pose}\nanswer:"), "line 5, .* in quotes"),
         (GOOD.replace("panel=graph", "kitchen=1"), "line 4, address: .* have kitchen=1"),
         (GOOD + GOOD.replace("panel=graph", "panel=x"), "line 10, address: .* have panel=x"),
         (GOOD.replace("answer:", "offers: {A: panel=no}\nanswer:"), "line 5, offers.A: "),
@@ -497,6 +536,34 @@ def test_a_wrong_step_names_file_line_and_key(tmp_path, text, message):
     file.write_text(text, encoding="latin-1" if message is None else "utf-8")
     with pytest.raises(FileError, match=message or "cannot be read"):
         read_checked(file)
+
+
+def test_recorded_steps_have_the_cameras_and_the_motions_of_their_addresses(tmp_path):
+    """A step without a camera begins with the whole character, whatever was seen before it."""
+    scenes = [
+        "panel=pose&camera=1,2,3,0,1,0",
+        "panel=compare&methods=artist,euclidean&playing=1",
+        "panel=distance&wave=1&playing=1",
+        "panel=weights&camera=3,2,1,0,1,0",
+    ]
+    file = tmp_path / "cameras.md"
+    steps = (GOOD.replace("panel=graph", f"rig=rabbit&resolution=16&{one}") for one in scenes)
+    file.write_text("".join(steps))
+    recording = Recording(read(file))
+    try:
+        for index in range(len(scenes)):
+            recording.record(index)
+    finally:
+        recording.recorder.close()
+    for scene, record in zip(scenes, recording.records, strict=True):
+        wanted = scene.partition("camera=")[2]
+        for view in record["views"].values():
+            message = view["messages"][0]
+            now = message["camera"].get("now")
+            seen = [] if now is None else [*now["position"], *now["focal_point"]]
+            assert seen == ([float(x) for x in wanted.split(",")] if wanted else [])
+            assert bool(message.get("playing")) == ("compare" in scene)
+            assert bool(message.get("animation")) == ("wave" in scene)
 
 
 def test_a_lesson_is_a_folder_or_one_file_of_steps(tmp_path):

@@ -41,6 +41,8 @@ def page(session, loop, tmp_path, monkeypatch):
     cutcell.save(path, arm_rig())
     session.state.param.update(resolution=16, graph_resolution=0)
     loading.load_files(session, [path])
+    loop.run_until(lambda: session.state.rig is not None)
+    correct.choose_file(session, False)
     loop.run_until(lambda: session.state.binding is not None)
     copied = []
     session.view.answer = lambda copy: copied.append(copy["text"])

@@ -146,11 +146,12 @@ def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
     arrival : mapping
         "methods", those of `SINGLE` and "settled", as far as an address says them.
     """
-    chosen = [] if state.methods == standard(before) else state.methods
+    standards = [standard(before, base) for base in ("computed", "file")]
+    chosen = [] if state.methods in standards else state.methods
     wanted = arrival.get("methods", chosen)
     names = [name for name in wanted if name in listed(state.rig, wanted)]
     if len(names) < FEWEST_VIEWS:
-        names = standard(state.rig)
+        names = standard(state.rig, state.opening.base)
     single = _single(state, arrival, names)
     state.param.update(methods=names, **single, settled=arrival.get("settled", ()))
 

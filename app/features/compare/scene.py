@@ -23,7 +23,7 @@ from .choices import NOW
 from .settings import is_settings, title_of_settings
 
 TITLES = {
-    NOW: "cutcell (current settings)",
+    NOW: "Current weights",
     "artist": "From file",
     "bbw": "Bounded biharmonic",
     "cutcell": "cutcell (paper)",

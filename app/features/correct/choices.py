@@ -30,6 +30,7 @@ class Choices(param.Parameterized):
         binding: Any
 
     edits: Any = param.Parameter(Edits(), doc="A cutcell.Edits.")
+    opening: Any = param.Parameter(Edits(), doc="The edits that the character was opened with.")
     layer = param.Integer(None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.")
     own: Any = param.Parameter(None, doc="The character without edits: a cutcell.Rig.")
     joint_handle = param.Boolean(False, label="Show move handle")
@@ -43,6 +44,11 @@ class Choices(param.Parameterized):
     part = param.Integer(
         None, allow_None=True, doc="A vertex of the connected component that is looked at."
     )
+
+    @property
+    def first_edits(self) -> Edits:
+        """The edits that the character was opened with; choices hold their method."""
+        return replace(self.opening, method={})
 
     @property
     def dragged(self) -> Any:

@@ -199,8 +199,8 @@ def swap(session: Session, rig: Rig, **more: Any) -> None:
 
 
 def clear(session: Session) -> None:
-    """Correct nothing any more."""
-    correct(session, Edits())
+    """Correct nothing any more; a file's own weights stay the base."""
+    correct(session, Edits(base=session.state.opening.base))
 
 
 def save(session: Session) -> None:

@@ -244,7 +244,7 @@ class _Front:
         values["answer"] = self._answer(Answer(**self._checked(raw, Answer, "answer.")))
         for label, query in values.get("offers", {}).items():
             if not isinstance(label, str) or not isinstance(query, str):
-                raise self._fail(f"offers.{label}", "must be a label and a part of an address")
+                raise self._fail(f"offers.{label}", f"must be LABEL: ADDRESS. {QUOTES}")
         return Step(**values)
 
     def check_addresses(self, step: Step, problems: Problems) -> None:
@@ -277,15 +277,16 @@ class _Front:
             raise self._fail("answer.kind", f"must be one of {', '.join(KINDS)}")
         if kind == "choice" and len(answer.options) < 2:
             raise self._fail("answer.options", "a choice needs two options or more")
-        if kind == "choice" and expected is not None and expected not in answer.options:
-            raise self._fail("answer.expected", "must be one of the options")
+        if kind == "choice" and expected not in (None, *answer.options):
+            raise self._fail("answer.expected", f"must be one of the options. {QUOTES}")
         if kind in ("number", "paint") and not _fits(expected, "float"):
             raise self._fail("answer.expected", "must be a number")
         return answer
 
 
+QUOTES = "Put Yes, No and numbers in quotes"
 _KINDS = {
-    "str": "a text; put it in quotes", "float": "a number", "list[str]": "a list of texts",
+    "str": f"a text. {QUOTES}", "float": "a number", "list[str]": f"a list of texts. {QUOTES}",
     "dict[str, str]": "lines of LABEL: ADDRESS", "Answer": "lines of KEY: VALUE",
 }  # fmt: skip
 

@@ -13,13 +13,16 @@ from ...document.loading import load_demo, motion, revisit
 from ...document.look import set_camera
 from ...document.recording import begin, restoring
 from ...document.session import Session
-from ..brush.choices import selected
+from ..brush.choices import BRUSH, selected
 from ..compare.choices import SINGLE, standard
 from ..compare.scene import title_of, weights_of
 from ..correct.choices import applied, changed_only, changes
+from ..select.choices import SELECT
 from .lesson import Step
 from .sliders import slide, sliders_of
 
+TOOLS = BRUSH | SELECT
+"""What a step begins without: a selection, say, is paint of the step before."""
 MAX_ANSWER = 200
 """Letters of an answer."""
 NO_PATH = "a point that no path reaches"
@@ -32,6 +35,7 @@ def watch(session: Session) -> None:
     follow(lambda *events: _answer_by_click(session, "vertex"), "vertex")
     follow(lambda *events: _answer_by_click(session, "joint"), "joint")
     follow(lambda *events: _prepare(session), "binding")
+    follow(lambda *events: session.state.param.update(**_unused_tools(session.state)), "step")
 
 
 def go(session: Session, index: int) -> None:
@@ -42,7 +46,8 @@ def go(session: Session, index: int) -> None:
         return
     if state.step < 0 and state.rig is not None:
         camera = None if session.view.at_home else session.view.camera
-        session.before_lesson = session.history, session.history.now, camera
+        tools = {name: getattr(state, name) for name in TOOLS}
+        session.before_lesson = session.history, session.history.now, camera, tools
     step = state.lesson[index]
     demo = step.demo or state.demo
     state.param.update(step=index, demo=demo)  # together: one entry of the browser's history
@@ -50,22 +55,27 @@ def go(session: Session, index: int) -> None:
 
 
 def leave(session: Session) -> None:
-    """End the lesson, and restore the character, the choices and the camera.
+    """End the lesson, and restore the character, the choices, the tools and the camera.
 
     A character that a person opened during the lesson stays, with its choices.
     """
     state, step = session.state, session.state.lesson_step
     before, session.before_lesson = session.before_lesson, None
-    state.param.update(step=-1, staged=False, brush=False)
+    state.param.update(step=-1, staged=False)
     if before is None:
         return
-    history, choices, camera = before
+    history, choices, camera, tools = before
     of_lesson = step.characters if step else []
     if session.character in (choices["character"], *of_lesson):
         session.history = history
         revisit(session, choices)
         if choices["character"] == session.character:
             set_camera(session, camera)
+        state.param.update(**tools)  # a selection counts on its own mesh only
+
+
+def _unused_tools(state: Any) -> dict[str, Any]:
+    return {name: state.param[name].default for name in TOOLS}
 
 
 def answer(session: Session, value: Any) -> None:

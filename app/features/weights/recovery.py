@@ -54,7 +54,7 @@ def go_back(session: Session) -> None:
     state = session.state
     mesh, choices, edits = session.computed or (None, {}, Edits())
     if state.rig is None or mesh is not state.rig.mesh or state.graph is None:
-        choices, edits = method_of(State(), GRAPH), Edits()
+        choices, edits = method_of(State(), GRAPH), state.first_edits
     if method_of(state, tuple(choices)) == choices and state.edits == edits:
         return
     if state.graph is None:

@@ -48,6 +48,7 @@ class BoundSkin:
     corners: NDArray[np.float64]  # (2, 3): of the box around the vertices
     nodes: list[int]  # of the joints
     has_binds: bool = True  # inverse bind matrices; without them joints are at their nodes
+    stored: int | None = None  # how many joints have one; the others may hold vertices, too
     mended: NDArray[np.bool_] = field(init=False)  # which joints got another matrix
     stays: dict[int, NDArray[np.float64]] = field(init=False, default_factory=dict)
     """Positions of those of them that stay where their matrix was."""
@@ -67,6 +68,7 @@ class BoundSkin:
         self.is_at_origin = self.is_solvable & (distance <= ORIGIN * size)
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
         self.is_held = self.shares > 0
+        self.is_held[self.stored :] = False
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
         shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
         trusted = self.is_held & shows

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ...errors import FileError
 from .constants import ARRAY_BUFFER, COMPONENTS
+from .container import whole
 
 ALIGNMENT = 8
 KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
@@ -146,7 +147,7 @@ class BufferWriter:
         """Copy all bytes that are still needed, and let the document refer to the copies."""
         data = bytearray()
         copied = []
-        for buffer, start, end in _merged(map(self._span, self._ranges)):
+        for buffer, start, end in _merged(span(owner, self._buffers) for owner in self._ranges):
             data += bytes((start - len(data)) % ALIGNMENT)  # what was aligned stays so
             copied.append((buffer, start, len(data)))
             data += self._buffers[buffer][start:end]
@@ -158,17 +159,24 @@ class BufferWriter:
                 owner["byteOffset"] = old + now - start
         return data
 
-    def _span(self, owner: dict[str, Any]) -> tuple[int, int, int]:
-        """Return a buffer, and the first and last byte that an object uses of it."""
-        buffer, start = owner["buffer"], owner.get("byteOffset", 0)
-        end = start + owner["byteLength"]
-        length = len(self._buffers[buffer]) if 0 <= buffer < len(self._buffers) else 0
-        if not 0 <= start <= end <= length:
-            raise FileError(
-                f"its document refers to the bytes {start} to {end} of buffers[{buffer}], which "
-                f"has {length}; the file is damaged"
-            )
-        return buffer, start, end
+
+def span(owner: dict[str, Any], buffers: Sequence[bytes]) -> tuple[int, int, int]:
+    """Return a buffer, and the first and last byte that an object uses of it."""
+    buffer, start = owner["buffer"], whole(owner, "byteOffset", "a buffer view", 0)
+    end = start + whole(owner, "byteLength", "a buffer view")
+    length = len(buffers[buffer]) if 0 <= buffer < len(buffers) else 0
+    if end > length:
+        raise FileError(
+            f"its document refers to the bytes {start} to {end} of buffers[{buffer}], which "
+            f"has {length}; the file is damaged"
+        )
+    return buffer, start, end
+
+
+def check_ranges(document: dict[str, Any], buffers: Sequence[bytes]) -> None:
+    """Refuse a document that refers to bytes that its buffers do not have."""
+    for owner in ranges_in(document):
+        span(owner, buffers)
 
 
 def _merged(spans: Iterable[tuple[int, int, int]]) -> list[tuple[int, int, int]]:

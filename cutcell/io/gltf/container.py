@@ -20,9 +20,19 @@ from typing import Any
 from urllib.parse import unquote
 
 from ...errors import CutcellError, FileError
-from ..files import HALVES, Allowance, one_line, read_bytes, whole_characters
+from ..files import (
+    HALVES,
+    LARGEST,
+    Allowance,
+    one_line,
+    read_bytes,
+    regular_file,
+    whole_characters,
+)
 
 MAGIC = b"glTF"
+HUGE = re.compile(rb"\d[eE]\+?\d{3}|\d{309}")
+"""Numbers that may be infinite for Python, which JSON cannot hold; seldom part of other text."""
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
@@ -77,6 +87,11 @@ class Document:
                 f"{user} refers to {kind}[{index}], but the file has {len(objects)} {kind}"
             )
         return objects[index]
+
+    def append(self, kind: str, item: dict[str, Any]) -> int:
+        """Append an object to a top-level list and return its number."""
+        self.json.setdefault(kind, []).append(item)
+        return len(self.items(kind)) - 1
 
     def view_range(self, view: dict[str, Any], user: str) -> tuple[bytes, int, int]:
         """Return the buffer of a buffer view, and the first byte and the number of those in it."""
@@ -155,6 +170,10 @@ def read_document(path: Path) -> Document:
     files: dict[str, bytes] = {}
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
+    for image in document.items("images"):  # saving copies them
+        file = beside(path, str(image.get("uri", "data:")))
+        if file is not None:
+            regular_file(file, path.parent)
     document.allow()
     return document
 
@@ -191,6 +210,8 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
             whole = with_whole_names(document)
             warnings += [HALVES] if whole != document else []
             document = whole
+        if HUGE.search(text):
+            json_bytes(document)
     except (ValueError, RecursionError) as e:
         raise FileError(f"its JSON cannot be read: {one_line(e)}") from None
     if not isinstance(document, dict):
@@ -218,16 +239,16 @@ def _buffer_bytes(
     else:
         if not isinstance(uri, str):
             raise FileError(f'{user}: "uri" must be text')
-        if uri not in files:
-            files[uri] = read_uri(path, uri, user)
+        if uri not in files or len(files[uri]) < length:
+            files[uri] = read_uri(path, uri, user, length)
         data = files[uri]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]
 
 
-def read_uri(path: Path, uri: Any, user: str) -> bytes:
-    """Return the bytes behind a data URI or a relative file name."""
+def read_uri(path: Path, uri: Any, user: str, most: int = LARGEST) -> bytes:
+    """Return the bytes behind a data URI, or the first `most` of a file in the folder or below."""
     if not isinstance(uri, str):
         raise FileError(f'{user}: "uri" must be text')
     if uri.startswith("data:"):
@@ -243,7 +264,7 @@ def read_uri(path: Path, uri: Any, user: str) -> bytes:
         raise FileError(
             f'{user}: "{uri[:80]}" is not a file in the folder of {path.name} or below it'
         )
-    return read_bytes(file)
+    return read_bytes(regular_file(file, path.parent) or file, max(most, 1))
 
 
 def beside(path: Path, uri: str) -> Path | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import re
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import FileError, SkeletonError
 from ...rig.checks import LARGEST
-from .container import Document, indices
+from .container import Document, extensions, indices
+
+NODE_POINTER = re.compile("/nodes/(0|[1-9][0-9]{0,8})/(translation|rotation|scale|weights)")
 
 
 class Nodes:
@@ -146,6 +149,29 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )
     return [np.array(level, int) for level in levels[:-1]]
+
+
+def target_of(channel: dict[str, Any]) -> tuple[Any, Any]:
+    """Return the node and the property that a channel moves; no node and another pointer.
+
+    `KHR_animation_pointer` names properties of nodes, too.
+    """
+    target = channel["target"]
+    extension = extensions(target).get("KHR_animation_pointer")
+    pointer = extension.get("pointer") if isinstance(extension, dict) else None
+    if not isinstance(pointer, str):
+        return target.get("node"), target.get("path")
+    match = NODE_POINTER.fullmatch(pointer)
+    return (int(match[1]), match[2]) if match else (None, pointer)
+
+
+def targets(document: Document) -> Iterator[tuple[Any, Any]]:
+    """Yield what `target_of` returns for each channel of a document that may be malformed."""
+    for clip in document.items("animations"):
+        channels = clip.get("channels")
+        for channel in channels if isinstance(channels, list) else ():
+            if isinstance(channel, dict) and isinstance(channel.get("target"), dict):
+                yield target_of(channel)
 
 
 def node_shifts(

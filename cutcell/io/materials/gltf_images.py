@@ -6,11 +6,13 @@ import mimetypes
 import os
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...errors import FileError
+from ..files import regular_file
 from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document, beside
 from .face_colors import StoredImage
@@ -89,14 +91,14 @@ def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict
         if not isinstance(uri, str) or uri.startswith("data:"):
             continue
         file, goal = beside(source, uri), beside(target, uri)
-        content = None if file is None else _content(file)
+        content = None if file is None else _content(file, source.parent)
         if file is None or goal is None or content is None:
             continue
         if not to_text:
             _embed(buffer, image, file.name, content)
         elif not os.path.lexists(goal):
             files[goal] = content
-        elif _content(goal) != content:
+        elif _content(goal, target.parent) != content:
             raise FileError(
                 f"its image {uri} would replace another file of that name; save it in another "
                 "folder, or as .glb, which takes images in"
@@ -104,12 +106,12 @@ def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict
     return files
 
 
-def _content(file: Path) -> bytes | None:
+def _content(file: Path, folder: Path) -> bytes | None:
     """Return what is in a file; None if it is not there, or none that can be read."""
-    try:
-        return file.read_bytes()
-    except (OSError, ValueError):
-        return None
+    with suppress(OSError):
+        real = regular_file(file, folder)
+        return None if real is None else real.read_bytes()
+    return None
 
 
 def _embed(buffer: BufferWriter, image: dict[str, Any], name: str, content: bytes) -> None:

@@ -44,7 +44,10 @@ def scene_document(
 ) -> tuple[Document, NDArray | None]:
     """Return a scene as a document, and the matrix (4, 4) of its first skinned mesh."""
     if needs_mesh and not len(scene["mesh_names"]):
-        raise FileError("has no mesh")
+        has_joints = scene["node_bones"].any()
+        hint = ", but a skeleton: give it to the mesh of another file by --skeleton"
+        notes = "".join(f". {note}" for note in scene.get("notes", ()))
+        raise FileError(f"has no mesh{hint if has_joints else ''}{notes}")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
     if len(bad):
         name = scene["node_names"][bad[0]]

@@ -41,7 +41,7 @@ class Page:
 
 def test_each_method_has_a_view_of_its_own_and_bones_stand_in_all(state, rig, euclidean):
     scene = resolve(state)
-    assert scene.views == ("cutcell (current settings)", "From file", "Euclidean")
+    assert scene.views == ("Current weights", "From file", "Euclidean")
     bodies = [scene.actors[name] for name in ("body", "body 1", "body 2")]
     assert [body.view for body in bodies] == [0, 1, 2]
     assert scene.actors["bones"].view is None

@@ -7,7 +7,6 @@ bind matrices contain it.
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Iterable, Iterator
 from copy import deepcopy
 
@@ -19,11 +18,11 @@ from ....rig import Attachment, TriangleMesh
 from ....runtime.display import listed
 from ..container import Document
 from ..influences import take_influences
-from ..nodes import Nodes
+from ..nodes import Nodes, targets
 from .bones import Bones, find_bones, human_bones
 from .parts import draws_mesh, hidden_nodes, mesh_name, vanishes
 from .primitives import attributes, primitives, read_triangles
-from .skins import Bind
+from .skins import BINDS, Bind, store_binds
 
 
 def bind_to_bones(document: Document, nodes: Nodes) -> tuple[Bind | None, str]:
@@ -83,21 +82,9 @@ def add_skins(
 
 
 def _add_skin(document: Document, joints: list[int], inverse: NDArray[np.float64]) -> int:
-    """Append a skin and its inverse bind matrices, shape (j, 4, 4), in a buffer of their own."""
-    data = np.ascontiguousarray(inverse.transpose(0, 2, 1), "<f4").tobytes()
-    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
-    buffer = _append(document, "buffers", {"byteLength": len(data), "uri": uri})
-    document.buffers += [b""] * (buffer - len(document.buffers)) + [data]
-    view = _append(document, "bufferViews", {"buffer": buffer, "byteLength": len(data)})
-    values = {"bufferView": view, "componentType": 5126, "count": len(joints), "type": "MAT4"}
-    accessor = _append(document, "accessors", values)
-    return _append(document, "skins", {"joints": list(joints), "inverseBindMatrices": accessor})
-
-
-def _append(document: Document, kind: str, item: dict) -> int:
-    """Append an object to a top-level list and return its number."""
-    document.json.setdefault(kind, []).append(item)
-    return len(document.items(kind)) - 1
+    """Append a skin and its inverse bind matrices, shape (j, 4, 4)."""
+    skin = {"joints": list(joints), BINDS: store_binds(document, inverse)}
+    return document.append("skins", skin)
 
 
 def _name(document: Document, nodes: Nodes, bones: Bones) -> None:
@@ -125,12 +112,9 @@ def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
     """Return why a document that moves has no joints; an empty text if nothing moves in it."""
     moved: set[int] = set()
     morphed: set[int] = set()
-    for clip in document.items("animations"):
-        channels = clip.get("channels")
-        for channel in channels if isinstance(channels, list) else ():
-            target = channel.get("target") if isinstance(channel, dict) else None
-            if isinstance(target, dict) and type(target.get("node")) is int:
-                (morphed if target.get("path") == "weights" else moved).add(target["node"])
+    for node, path in targets(document):
+        if type(node) is int:
+            (morphed if path == "weights" else moved).add(node)
     rigid = [i for i in meshes if set(nodes.with_ancestors([i])) & moved]
     if rigid:
         names = listed([mesh_name(document, nodes, i) for i in rigid])

@@ -14,7 +14,7 @@ from ....errors import FileError
 from ....rig.clip import Clip
 from ..constants import CUBICSPLINE, INTERPOLATIONS, LINEAR, STEP
 from ..container import Document
-from ..nodes import Nodes, compose, node_shifts
+from ..nodes import Nodes, compose, node_shifts, target_of
 from .accessors import Accessor, find_accessor, read_accessor
 
 FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
@@ -128,24 +128,30 @@ def _tracks(
     document: Document, place: dict[int, int], animation: dict[str, Any], label: str,
     key_times: dict[Any, NDArray[np.float64]],
 ) -> list[Track]:  # fmt: skip
-    """Return the channels that move a node of a subtree, by their keys, which are cached."""
+    """Return the channels that move a node of a subtree, by their keys, which are cached.
+
+    What saving needs of the others is checked.
+    """
     channels, samplers = animation.get("channels"), animation.get("samplers")
     if not isinstance(channels, list) or not isinstance(samplers, list):
         raise FileError(f'{label}: needs "channels" and "samplers"')
     groups: dict[Any, Track] = {}
     for channel in channels:
-        target = channel.get("target") if isinstance(channel, dict) else None
-        if not isinstance(target, dict):
+        if not isinstance(channel, dict) or not isinstance(channel.get("target"), dict):
             raise FileError(f'{label}: a channel has no "target"')
-        node, path = target.get("node"), target.get("path")
-        if node not in place or path not in WIDTHS:
-            continue
+        node, path = target_of(channel)
         at = channel.get("sampler")
         if type(at) is not int or not 0 <= at < len(samplers):
             raise FileError(f"{label}: a channel uses sampler {at!r} of {len(samplers)}")
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
+        if node not in place or path not in WIDTHS:
+            if path == "translation":
+                find_accessor(document, sampler.get("output"), "VEC3", label)
+                if node is not None:
+                    document.item("nodes", node, label)
+            continue
         how, index = sampler.get("interpolation", LINEAR), sampler.get("input")
         if type(index) is not int or index not in key_times:
             keys = read_accessor(document, index, "SCALAR", label)[:, 0]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
+from ..buffer import check_ranges
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
@@ -29,7 +30,8 @@ from .primitives import (
     read_triangles,
     read_weights,
 )
-from .skins import Bind, read_bind, read_skeleton
+from .skins import Bind, check_unused, read_bind, read_skeleton
+from .unread import unread
 
 VERTEX_NAMES = ("POSITION", "JOINTS_", "WEIGHTS_")
 """Attributes of a vertex buffer; primitives that share them draw from the same."""
@@ -79,9 +81,13 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
     with malformed():
         document = plain_document(path)
+        document.warnings += unread(document)
         if not bare or _skinned_nodes(Nodes(document)):
-            return read_rig(document, path, accessories=accessories, has_bones=True)
-        return read_bare(document, Nodes(document), path.stem)
+            rig = read_rig(document, path, accessories=accessories, has_bones=True)
+        else:
+            rig = read_bare(document, Nodes(document), path.stem)
+        check_ranges(document.json, document.buffers)  # saving copies them all
+        return rig
 
 
 def read_rig(
@@ -110,6 +116,7 @@ def read_rig(
         if bones is None:
             return read_bare(document, nodes, path.stem, why)
         bind, skinned = bones, _skinned_nodes(nodes)
+    check_unused(document, bind.skins)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
     skinned = _skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
@@ -171,6 +178,8 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
     stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
     mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
     left_out = left_out_meshes(document, nodes, placed, ())
+    check_unused(document, ())  # which saving with a skeleton reads, and clips as well
+    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))
     document.forget()
     return Rig(
         mesh,

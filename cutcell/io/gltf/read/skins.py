@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +17,8 @@ from ..container import Document, indices
 from ..nodes import Nodes
 from .accessors import read_accessor
 from .primitives import drawn_primitives, joint_shares, read_positions
+
+BINDS = "inverseBindMatrices"
 
 
 def _votes(skin: BoundSkin, to_rig: NDArray) -> tuple[NDArray, NDArray]:
@@ -71,7 +74,7 @@ def mended_warning(names: list[str]) -> str:
 
 def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) -> BoundSkin:
     joints = _skin_joints(document, skin)
-    inverse, has_binds = _inverse_binds(document, skin, joints)
+    inverse, has_binds, count = _inverse_binds(document, skin, joints)
     shares, corners = _vertices(document, nodes, users, len(joints))
     nearest = [*nodes.nearest(set(joints)), -1]  # the last is above roots
     number = {node: k for k, node in enumerate(joints)} | {-1: -1}
@@ -87,6 +90,7 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
         corners,
         joints,
         has_binds,
+        count,
     )
 
 
@@ -119,22 +123,52 @@ def _skin_joints(document: Document, skin: int) -> list[int]:
     return joints
 
 
-def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[NDArray, bool]:
+def _inverse_binds(
+    document: Document, skin: int, joints: list[int]
+) -> tuple[NDArray, bool, int | None]:
+    """Return matrices, whether the skin has any, and how many, None for all."""
     owner, user = document.items("skins")[skin], document.label("skins", skin)
     same = np.tile(np.eye(4), (len(joints), 1, 1))
-    if "inverseBindMatrices" not in owner:
-        return same, False
-    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)
-    if len(stored) < len(joints):
-        raise SkeletonError(
-            f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
-        )
-    inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
-    inverse = inverse.copy()
+    if BINDS not in owner:
+        return same, False, None
+    stored = read_accessor(document, owner[BINDS], "MAT4", user)[: len(joints)]
+    inverse = np.zeros_like(same)
+    inverse[: len(stored)] = stored.reshape(-1, 4, 4).transpose(0, 2, 1)
     is_finite = np.isfinite(inverse).all(axis=(1, 2))
     inverse[is_finite, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
     # Several joints that all have the identity have no matrices, as far as glTF goes.
-    return inverse, len(joints) == 1 or not np.array_equal(inverse, same)
+    is_same = np.array_equal(inverse[: len(stored)], same[: len(stored)]) and len(joints) > 1
+    return same if is_same else inverse, not is_same, len(stored)
+
+
+def _complete(document: Document, skin: int, inverse: NDArray, count: int) -> None:
+    """Give a skin the inverse bind matrices of all its joints, of which `count` were there."""
+    document.json["skins"][skin][BINDS] = store_binds(document, inverse)
+    document.warnings.append(
+        f"{document.label('skins', skin)} has {len(inverse)} joints but {count} inverse bind "
+        "matrices; the other joints are placed by their nodes"
+    )
+
+
+def store_binds(document: Document, inverse: NDArray[np.float64]) -> int:
+    """Append inverse bind matrices (j, 4, 4) to a document, in a buffer of their own."""
+    data = np.ascontiguousarray(inverse.transpose(0, 2, 1), "<f4").tobytes()
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    buffer = document.append("buffers", {"byteLength": len(data), "uri": uri})
+    document.buffers += [b""] * (buffer - len(document.buffers)) + [data]
+    view = document.append("bufferViews", {"buffer": buffer, "byteLength": len(data)})
+    values = {"bufferView": view, "componentType": 5126, "count": len(inverse), "type": "MAT4"}
+    return document.append("accessors", values)
+
+
+def check_unused(document: Document, used: Container[int]) -> None:
+    """Refuse damaged skins that no mesh uses: saving moves their joints, too."""
+    for skin, owner in enumerate(document.items("skins")):
+        if skin not in used:
+            joints = indices(owner, "joints", document.label("skins", skin))
+            for node in joints:
+                document.item("nodes", node, document.label("skins", skin))
+            _inverse_binds(document, skin, joints)
 
 
 @dataclass(eq=False)
@@ -205,10 +239,17 @@ def read_bind(
             votes.append(_votes(one, to_rig))
             bind.world = _stands(stored[skins[0]], votes) if world is None else world
     for skin, one in stored.items():
-        bind.mended[skin] = {
+        mended_rows = {
             k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
             for k in np.flatnonzero(one.mended).tolist()
         }
+        if one.stored is not None and one.stored < len(one.nodes):
+            for k, matrix in mended_rows.items():
+                one.inverse[k] = matrix
+            _complete(document, skin, one.inverse, one.stored)
+            mended -= set(bind.skins[skin][one.stored :])
+            mended_rows = {}
+        bind.mended[skin] = mended_rows
     if mended - set(bind.stays):
         names = _names(nodes, bind)
         placed = sorted(mended - set(bind.stays))

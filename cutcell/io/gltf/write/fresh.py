@@ -86,7 +86,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
         at_rest = _transform(binds[one.joint])
         builder.add_node({"name": one.name, "mesh": mesh, **at_rest}, one.joint)
     for clip in rig.clips:
-        _add_clip(builder, rig, clip)
+        add_clip(builder, rig, clip)
     data = builder.buffer.finish()
     return with_whole_names(builder.json), data
 
@@ -98,12 +98,13 @@ def _attributes(builder: GltfBuilder, mesh: TriangleMesh) -> dict[str, int]:
     }
 
 
-def _add_clip(builder: GltfBuilder, rig: Rig, clip: Clip) -> None:
+def add_clip(builder: GltfBuilder, rig: Rig, clip: Clip, first: int = 0) -> None:
+    """Add a clip of joints that are nodes from `first` on, see `joint_nodes`."""
     animation: dict[str, Any] = {"name": clip.name, "channels": [], "samplers": []}
     times = builder.floats(clip.times[:, None], target=None, bounds=True)
     for path, values in _local_poses(rig, clip).items():
         for j in range(values.shape[1]):
-            builder.add_track(animation, j, path, times, values[:, j])
+            builder.add_track(animation, first + j, path, times, values[:, j])
     builder.add("animations", animation)
 
 

@@ -23,10 +23,9 @@ from ....rig import Rig
 from ..buffer import BufferWriter
 from ..constants import CUBICSPLINE
 from ..container import Document
-from ..nodes import Nodes, node_shifts
+from ..nodes import Nodes, node_shifts, target_of
 from ..read.accessors import read_accessor
-
-BINDS = "inverseBindMatrices"
+from ..read.skins import BINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,13 +128,13 @@ def _binds(
 ) -> list[NewValues]:
     replaced = []
     for i, skin in enumerate(document.get("skins", [])):
-        shift = frame_shifts[skin["joints"]]
+        shift = frame_shifts[skin.get("joints", [])]
         if not shift.any() and i not in mended:
             continue
         values = read_binds(loaded, i)
         for slot, matrix in mended.get(i, {}).items():
             values[slot] = matrix.T.ravel()
-        values[: len(shift), 12:15] -= shift
+        values[: len(shift), 12:15] -= shift[: len(values)]
         replaced.append(NewValues(skin, BINDS, values.astype("<f4"), skin.pop(BINDS)))
     return replaced
 
@@ -149,9 +148,8 @@ def _translations(
         samplers, channels = animation["samplers"], animation["channels"]
         uses = Counter(channel["sampler"] for channel in channels)
         for channel in channels:
-            target = channel["target"]
-            node = target.get("node")
-            if target.get("path") != "translation" or node is None or not shifts[node].any():
+            node, path = target_of(channel)
+            if path != "translation" or node is None or not shifts[node].any():
                 continue
             sampler = samplers[channel["sampler"]]
             if uses[channel["sampler"]] > 1:  # what moves other nodes, too, stays

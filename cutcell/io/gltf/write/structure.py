@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from ....errors import SkeletonError
 from ....rig import Rig, with_origin
-from ..nodes import Nodes
+from ..nodes import Nodes, target_of
 from ..read.read import GltfSource, StoredPart
-from .moves import BINDS, NewValues, own_moves, read_binds
+from ..read.skins import BINDS
+from .moves import NewValues, own_moves, read_binds
 
 
 def take_structure(
@@ -70,8 +71,7 @@ class _Edit:
             animation["channels"] = [
                 channel
                 for channel in animation["channels"]
-                if channel["target"].get("node") not in frozen
-                or channel["target"].get("path") == "weights"
+                if target_of(channel)[0] not in frozen or target_of(channel)[1] == "weights"
             ]
         animations = self.document.get("animations", [])
         animations[:] = [animation for animation in animations if animation["channels"]]
