@@ -40,6 +40,23 @@ def bar(nx=20, joints=3):
     return Rig(TriangleMesh(vertices, faces), skeleton)
 
 
+def side_by_side(alone):
+    """Put two of a rig side by side, which share no joint."""
+    count, joints = len(alone.mesh.vertices), len(alone.skeleton.joints)
+    aside = np.array([1.2 * np.ptp(alone.mesh.vertices, axis=0)[0], 0, 0])
+    mesh = TriangleMesh(
+        np.vstack([alone.mesh.vertices, alone.mesh.vertices + aside]),
+        np.vstack([alone.mesh.faces, alone.mesh.faces + count]),
+    )
+    parents = alone.skeleton.parents
+    skeleton = Skeleton(
+        np.vstack([alone.skeleton.joints, alone.skeleton.joints + aside]),
+        np.concatenate([parents, np.where(parents < 0, -1, parents + joints)]),
+        deform=np.tile(alone.skeleton.deform, 2),
+    )
+    return Rig(mesh, skeleton, allowed=np.kron(np.eye(2), np.ones((count, joints))) > 0)
+
+
 def surface_of(ticks, solid):
     """Make the surface of the solid cells of a grid; `ticks` are its planes along each axis."""
     filled = np.pad(solid, 1)

@@ -1,5 +1,6 @@
 """The command `cutcell render`: a picture, a film or an interactive page of what the page shows."""
 
+import os
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +15,7 @@ from cutcell.cli.options import (
     OptionalRigFile,
     SkeletonFile,
     chosen_method,
+    is_given,
     with_method,
     with_options,
 )
@@ -103,7 +105,7 @@ def render(
     scenes, film, process = required(
         "pictures need", "cutcell_app.headless", "cutcell_viewers.film", "cutcell_viewers.process"
     )
-    explicit = [name for name in context.params if _is_given(context, name)]
+    explicit = [name for name in context.params if is_given(context, name)]
     if lesson is not None or lesson_from is not None:
         _write_lesson(explicit, lesson, lesson_from, quiet)
         return
@@ -172,7 +174,8 @@ def _describe(
     for one in chosen:
         method, textures = one.method, scenes.textures_for(rig, one)
         if method not in bindings and len(rig.skeleton.joints):
-            bindings[method] = bind(rig, method=method, progress=progress)
+            resolution = method.resolution if has_resolution else None
+            bindings[method] = bind(rig, resolution, method=method, progress=progress)
             warnings += bindings[method].warnings
         computed: dict[str, Any] = {
             "binding": bindings.get(method),
@@ -211,7 +214,7 @@ def _write_page(
         loaded.require_joints()
         joint = None if choices["bone"] is None else bone_index(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
-        binding = bind(loaded, method=method, progress=progress)
+        binding = bind(loaded, options.get("resolution"), method=method, progress=progress)
         page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
         write_all({out: page.encode()})
     _report(out, "an interactive page, ", [*loaded.warnings, *binding.warnings], quiet)
@@ -256,6 +259,8 @@ def _check_interactive(explicit: list[str]) -> None:
 
 def required(users: str, *modules: str) -> list[Any]:
     """Import modules that need the libraries of `cutcell[app]`."""
+    if os.path.expanduser("~") == "~":  # Bokeh cannot be imported without a home folder
+        os.environ["HOME"] = "/nonexistent"
     try:
         return [import_module(name) for name in modules]
     except ModuleNotFoundError as error:
@@ -263,8 +268,3 @@ def required(users: str, *modules: str) -> list[Any]:
             f"{users} libraries that are not installed ({error.name} is missing); "
             "install them by: pip install 'cutcell[app]'"
         ) from None
-
-
-def _is_given(context: typer.Context, option: str) -> bool:
-    source = context.get_parameter_source(option)
-    return source is not None and source.name == "COMMANDLINE"

@@ -23,7 +23,7 @@ from .options import (
     Symmetric,
     TemplateName,
     chosen_method,
-    layered_method,
+    over_stored,
     with_method,
 )
 from .report import described, report_rows
@@ -106,7 +106,8 @@ def bind(
     from .summary import summarize_weights
 
     edits = None if layers is None else load_edits(layers)
-    how = chosen_method(options) if edits is None else layered_method(options, edits.method)
+    chosen = over_stored(options, edits)
+    how = chosen_method(chosen)
     touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
     fits = None if template is None else check_template(template)
     check_output(out)
@@ -128,7 +129,7 @@ def bind(
     with progress_bars(quiet) as progress:
         binding = compute(
             loaded,
-            how.resolution if edits is not None and "resolution" in edits.method else None,
+            chosen.get("resolution"),
             method=how,
             **touches,
             edits=edits,
@@ -136,7 +137,8 @@ def bind(
             progress=progress,
         )
     dropped: list[str] = []
-    is_open = options["max_influences"] is None and how.max_influences is None
+    how = binding.method
+    is_open = "max_influences" not in options and how.max_influences is None
     if is_open and out.suffix.lower() in GLTF:
         binding, dropped = _limited(loaded, binding, edits, touches)
         how = how.with_options(max_influences=GLTF_INFLUENCES)
@@ -157,7 +159,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": options["method"],
+        "method": chosen.get("method", "animation"),
         "parameters": {**asdict(how), **touches},
         "layers": None if layers is None else str(layers),
         "template": template,

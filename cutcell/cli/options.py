@@ -17,6 +17,7 @@ from ..runtime.standard_output import output_errors
 from .console import for_people
 
 if TYPE_CHECKING:
+    from ..editing import Edits
     from ..method import Method
 
 METHOD = "The method"
@@ -225,17 +226,29 @@ else:
 
 
 def with_options(
-    name: str, table: Mapping[str, tuple[Any, ...]]
+    name: str, table: Mapping[str, tuple[Any, ...]], only_given: bool = False
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Replace a command's parameter of a name by options, which it gets as a dictionary."""
+    """Replace a command's parameter of a name by options, which it gets as a dictionary.
+
+    With `only_given` the dictionary lacks those that the command line leaves out.
+    """
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @wraps(command)
         def run(**values: Any) -> None:
-            command(**{name: {key: values.pop(key) for key in table}}, **values)
+            chosen = {key: values.pop(key) for key in table}
+            if only_given:
+                context = values["context"] if has_context else values.pop("context")
+                chosen = {key: chosen[key] for key in table if is_given(context, key)}
+            command(**{name: chosen}, **values)
 
+        declared = inspect.signature(command, eval_str=True).parameters
+        has_context = "context" in declared
         parameters: list[inspect.Parameter] = []
-        for parameter in inspect.signature(command, eval_str=True).parameters.values():
+        if only_given and not has_context:
+            kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+            parameters = [inspect.Parameter("context", kind, annotation=typer.Context)]
+        for parameter in declared.values():
             if parameter.name != name:
                 parameters.append(parameter)
                 continue
@@ -250,8 +263,18 @@ def with_options(
 
 
 def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Replace a command's parameter `options` by options of the method; all when none is named."""
-    return with_options("options", {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS})
+    """Replace a command's parameter `options` by options of the method; all when none is named.
+
+    The dictionary holds those that the command line gives, also where they equal their defaults.
+    """
+    table = {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS}
+    return with_options("options", table, only_given=True)
+
+
+def is_given(context: typer.Context, option: str) -> bool:
+    """Return whether the command line gives an option."""
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def chosen_method(options: Mapping[str, Any]) -> Method:
@@ -265,13 +288,10 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
             values[key] = int(text)
     if values.get("max_influences") == "all":
         values["max_influences"] = None
-    return method_of(check_choice("method", values.pop("method"), METHODS), **values)
+    return method_of(check_choice("method", values.pop("method", "animation"), METHODS), **values)
 
 
-def layered_method(options: Mapping[str, Any], stored: Mapping[str, Any]) -> Method:
-    """Return the method that is stored with layers, with other options of the command line."""
-    chosen = {name: value for name, value in options.items() if value != METHOD_OPTIONS[name][1]}
-    if "method" in chosen:
-        stored = {}
-    stored = {name: "all" if value is None else value for name, value in stored.items()}
-    return chosen_method({**options, **stored, **chosen})
+def over_stored(options: Mapping[str, Any], edits: Edits | None) -> dict[str, Any]:
+    """Return the options that are stored with edits, replaced by those of the command line."""
+    stored = {} if edits is None or "method" in options else edits.method
+    return {name: "all" if value is None else value for name, value in stored.items()} | {**options}

@@ -107,9 +107,9 @@ def bind(
     edits = Edits() if edits is None else edits
     rig = edited_rig(rig, edits)
     _check(rig, method)
-    if graph is None and resolution is None:
-        method = method_per_character(rig, method)
-    elif graph is not None:
+    if resolution is None:
+        method = method_per_character(rig, method, graph)
+    if graph is not None:
         require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
     steps = bind_steps(
         rig, method, edits, graph, smoothing=smoothing, symmetric=symmetric, locked=locked

@@ -12,7 +12,12 @@ from ..geodesics import FALLBACK_REASONS, PIECES, BoneDistances, trace_path
 from ..geodesics.bone_extents.skins import method_per_character
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
-from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
+from ..graph.fingerprint import (
+    distance_fingerprint,
+    graph_fingerprint,
+    measured_fingerprint,
+    require_same,
+)
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
 from ..rig.checks import check_integer
@@ -21,7 +26,7 @@ from ..runtime.progress import Progress, silent
 from ..weights.context import Context, Step, run
 from .absence import absence_of, factors_of, rank_of
 from .bind import bind_steps
-from .edited import edited_rig
+from .edited import edited_rig, joints_measured
 from .edits import Edits
 from .layers.layer import Layer
 from .locks import joint_index
@@ -190,12 +195,12 @@ def explain(
     vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
     edits = Edits() if edits is None else edits
     rig = edited_rig(rig, edits)
-    measured_at = None if distances is None else distances.graph.lattice.resolution
-    if resolution is None and measured_at != method.resolution:  # as `bind` does
-        method = method_per_character(rig, method)
+    if resolution is None:  # as `bind` does
+        method = method_per_character(rig, method, None if distances is None else distances.graph)
     if distances is not None:
         expected = graph_fingerprint(rig.mesh, method)
         expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
+        expected |= measured_fingerprint(*joints_measured(edits.reach, method))
         require_same("distances", distances.fingerprint, expected)
     context = Context(method, rig.allowed, progress)
     rows: dict[str, NDArray[np.float64]] = {}

@@ -2,28 +2,65 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import WeightsError
 from ..graph import CutCellGraph
-from ..rig import Skeleton
+from ..rig.checks import as_array
 from ..runtime.progress import Progress
-from .bones import Bones, Sources
+from .bones import Bones, Sources, least_of_joints, per_joint
+from .fallback import straight_to_nearest
 from .solver import BoneDistanceSolver
 
+if TYPE_CHECKING:
+    from .distances import BoneDistances
 
-def check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.bool_]) -> None:
-    """Refuse a wrong shape, and vertices without any joint that carries weight."""
-    shape = (len(graph.vertex_node), len(skeleton.joints))
-    if allowed.shape != shape:
-        raise WeightsError(f"allowed has the shape {allowed.shape}, expected {shape}")
-    bad = np.flatnonzero(~allowed[:, skeleton.deform].any(axis=1))
+
+def check_allowed(
+    graph: CutCellGraph, deform: NDArray[np.bool_], allowed: ArrayLike
+) -> NDArray[np.bool_]:
+    """Return which joints vertices may follow; each needs one that carries weight (`deform`)."""
+    shape = (len(graph.vertex_node), len(deform))
+    allowed = as_array(allowed, np.bool_, shape, "allowed", WeightsError)
+    bad = np.flatnonzero(~allowed[:, deform].any(axis=1))
     if len(bad):
         raise WeightsError(
             f"vertex {bad[0]} may follow no joint that carries weight "
             f"({len(bad)} vertices are so); check which joints its skin lists"
         )
+    return allowed
+
+
+def nearest_allowed(
+    distances: BoneDistances, vertices: NDArray[np.intp], allowed: NDArray[np.bool_]
+) -> NDArray[np.intp]:
+    """Return the nearest joint that each of some vertices (v,) may follow, shape (v,).
+
+    If the distances are those of other joints, all are measured; straight where no path leads.
+
+    Shapes: allowed (v, j).
+    """
+
+    def straight(some: NDArray[np.intp]) -> NDArray[np.float64]:
+        points, bones = distances.graph.nodes[distances.graph.vertex_node[some]], distances.bones
+        distance = straight_to_nearest(points, bones, len(bones.joint))
+        return per_joint(least_of_joints(distance, bones), bones, allowed.shape[1])
+
+    nearest = np.full(len(vertices), -1)
+    measures = (
+        lambda some: distances.joint[:, some],
+        lambda some: distances.all_joints()[:, some],
+        straight,
+    )
+    for measure in measures:
+        rest = np.flatnonzero(nearest < 0)
+        if len(rest):
+            distance = np.where(allowed[rest].T, measure(vertices[rest]), np.inf)
+            nearest[rest] = np.where(np.isinf(distance.min(axis=0)), -1, distance.argmin(axis=0))
+    return nearest
 
 
 def allowed_distances(

@@ -103,7 +103,7 @@ def build_graph(
         # number of at least tau are kept.
         inside = inside_intervals(hits, tau, numbers, resolution, share_of(report, 0.45, 0.9))
         graph = assemble(surface, hits, inside, method.connectivity, tau)
-        object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method))
+        object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method, rays, winding))
         report(1.0)
         return graph
 

@@ -174,7 +174,7 @@ class Rig(Summarized):
             object.__setattr__(self, "origin", frozen(origin.astype(np.int32)))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
-        self._check_units()
+        check_units(self.skeleton, self.mesh.bounds)
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -227,23 +227,25 @@ class Rig(Summarized):
         clips = tuple(clip.moved(before.parents, by) for clip in self.clips)
         return replace(self, skeleton=skeleton, clips=clips)
 
-    def _check_units(self) -> None:
-        joints = self.skeleton.joints
-        unit = np.abs(self.mesh.bounds).max()  # squares of what is measured must not overflow
-        with np.errstate(over="ignore"):
-            low, high = self.mesh.bounds / unit
-            outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
-            distance = np.linalg.norm(outside, axis=1)
-        diagonal = np.linalg.norm(high - low)
-        far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & self.skeleton.deform)
-        if len(far):
-            worst = far[np.argmax(distance[far])]
-            position = ", ".join(f"{x:.4g}" for x in joints[worst])
-            raise SkeletonError(
-                f'joint "{self.skeleton.names[worst]}" at ({position}) lies '
-                f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
-                f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
-            )
+
+def check_units(skeleton: Skeleton, bounds: NDArray[np.float64]) -> None:
+    """Raise an error if a joint that may carry weight is far from a mesh with bounds (2, 3)."""
+    joints = skeleton.joints
+    unit = np.abs(bounds).max()  # squares of what is measured must not overflow
+    with np.errstate(over="ignore"):
+        low, high = bounds / unit
+        outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
+        distance = np.linalg.norm(outside, axis=1)
+    diagonal = np.linalg.norm(high - low)
+    far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & skeleton.deform)
+    if len(far):
+        worst = far[np.argmax(distance[far])]
+        position = ", ".join(f"{x:.4g}" for x in joints[worst])
+        raise SkeletonError(
+            f'joint "{skeleton.names[worst]}" at ({position}) lies '
+            f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
+            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
+        )
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

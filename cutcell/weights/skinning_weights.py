@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from ..geodesics import BoneDistances
+from ..geodesics.allowed import check_allowed, nearest_allowed
 from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
@@ -60,6 +61,8 @@ def skinning_weights(
     ------
     ParameterError
         A parameter is out of its range, or the distances are of too few joints.
+    WeightsError
+        `allowed` has the wrong shape or leaves a vertex without any joint.
 
     References
     ----------
@@ -76,6 +79,9 @@ def skinning_weights(
         )
 
     graph = distances.graph
+    if allowed is not None:
+        deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
+        allowed = check_allowed(graph, deform, allowed)
     context = Context(method, allowed, progress, graph, distances, adjustments, surface)
     return run(weight_steps(method, allowed), context).weights
 
@@ -110,7 +116,7 @@ def permit(context: Context) -> NDArray[np.float64]:
     assert context.allowed is not None
     permitted = np.where(context.allowed, context.weights, 0.0)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    permitted[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
+    permitted[lost, nearest_allowed(context.distances, lost, context.allowed[lost])] = 1
     return permitted / permitted.sum(axis=1, keepdims=True)
 
 

@@ -62,6 +62,29 @@ def test_weights_are_nearly_those_of_all_joints():
     np.testing.assert_allclose(*weights, atol=1e-3)
 
 
+@pytest.mark.parametrize("method", ["animation", "paper"])
+def test_weights_follow_a_mask_that_their_distances_did_not_know(method):
+    """The nearest joint that a vertex may follow was then perhaps not measured."""
+    rig = bar(24, joints=9)
+    beside = np.add(rig.mesh.vertices, [0, 2, 0])
+    vertices = np.concatenate([rig.mesh.vertices, beside])
+    faces = np.concatenate([rig.mesh.faces, rig.mesh.faces + len(beside)])
+    graph = cutcell.build_graph((vertices, faces), 24, method=method)
+    distances = bone_distances(graph, rig.skeleton, method=method)
+    allowed = np.zeros((len(vertices), 9), bool)
+    allowed[:, 0] = allowed[::2, 7] = True
+    weights = cutcell.skinning_weights(distances, method=method, allowed=allowed)
+    np.testing.assert_array_equal(weights[~allowed], 0)
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+    last = np.argmax(rig.mesh.vertices[::2, 0]) * 2
+    assert weights[last, 7] > 0.5
+    for wrong in (allowed[0], allowed[:, :3], np.zeros_like(allowed)):
+        with pytest.raises(
+            cutcell.WeightsError, match=r"allowed has the shape|may follow no joint"
+        ):
+            cutcell.skinning_weights(distances, method=method, allowed=wrong)
+
+
 def test_vertices_that_only_other_joints_reach_have_a_reason():
     rig, allowed, beside = RIG, halves(), np.array([0, 3, 0])
     vertices = np.concatenate([rig.mesh.vertices, rig.mesh.vertices + beside])
