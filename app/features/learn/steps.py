@@ -15,7 +15,7 @@ from ...document.recording import begin, restoring
 from ...document.session import Session
 from ..brush.choices import BRUSH, selected
 from ..compare.choices import SINGLE, standard
-from ..compare.scene import title_of, weights_of
+from ..compare.scene import shown_title, weights_of
 from ..correct.choices import applied, changed_only, changes
 from ..select.choices import SELECT
 from .lesson import Step
@@ -210,13 +210,13 @@ def painted_score(state: Any, step: Step) -> float:
 
 
 def painted_scores(state: Any) -> dict[str, float]:
-    """Return the same for each method that is compared, by its title."""
+    """Return the same for each method that is compared, by its caption."""
     step, painted = state.lesson_step, selected(state)
     if step is None or step.answer.kind != "paint" or painted is None or state.panel != "compare":
         return {}
     tables = {name: weights_of(state, name) for name in state.methods}
     return {
-        title_of(name): _agreement(painted, branch_weights(state, step.answer.joint, table))
+        shown_title(state, name): _agreement(painted, branch_weights(state, step.answer.joint, table))
         for name, table in tables.items()
         if table is not None
     }
