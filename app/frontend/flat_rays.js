@@ -10,6 +10,7 @@ const SLIM = 700  // a window less wide than this shows a part
 const PART = 0.3  // of the width, above the mark and below
 
 const clamped = (x, low, high) => Math.min(Math.max(x, low), high)
+const away = (winding) => Math.abs(winding - NEAR_HOLE)
 const signed = (step) => step > 0 ? "+1" : "−1"
 
 export class Rays {
@@ -18,29 +19,24 @@ export class Rays {
     this.ways = [0, 1].map((way) => scene.data.rays.filter((ray) => ray.way === way))
     scene.lit = new Set()
     this.index = this.ways.map((rays) => Math.floor(rays.length / 2))
+    this.identity = `${scene.mode} ${scene.data.box}`  // alike where only signs of faces change
     const {of, way, point} = scene.marked ?? {}
     this.turn(this.ways[0].length ? 0 : 1)
-    const isSame = of === this.identity
-    if (isSame) { this.way = way; this.press(point) }
-    if (scene.mode === "winding" && !isSame) { this.findNotable() }
+    if (of === this.identity) {
+      this.way = way
+      this.press(point)
+    } else if (scene.mode === "winding") {
+      this.findNotable()
+    }
     this.isNear = innerWidth < SLIM
-  }
-
-  // What a mark stays on, as where only the signs of faces change.
-  get identity() {
-    return `${this.scene.mode} ${this.scene.data.box}`
   }
 
   // Begins in the longest run where faces are reversed; else near a hole, where there is one.
   findNotable() {
-    const all = this.ways[this.way].flatMap((ray, index) =>
-      runs(ray).map(([low, high, winding]) => ({index, at: (low + high) / 2, winding, low, high})))
-    const reversed = all.filter(({winding}) => winding < REVERSED)
-      .sort((a, b) => (b.high - b.low) - (a.high - a.low))
-    const away = ({winding}) => Math.abs(winding - NEAR_HOLE)
-    const near = all.filter((one) => away(one) < NEAR_HOLE / 2).sort((a, b) => away(a) - away(b))
-    const [first] = [...reversed, ...near]
-    if (first) { this.choose(first.index, first.at) }
+    const all = this.ways[this.way].flatMap((ray, index) => runs(ray).map(([low, high, winding]) =>
+      ({index, at: (low + high) / 2, rank: winding < REVERSED ? high - low : -away(winding)})))
+    const best = all.reduce((one, other) => other.rank > one.rank ? other : one)
+    if (best.rank > -NEAR_HOLE / 2) { this.choose(best.index, best.at) }
   }
 
   turn(way) {

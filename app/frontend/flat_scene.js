@@ -39,8 +39,9 @@ const ASKED = {
   graph: "Click corners of the triangle, or use the buttons. Enter answers.",
   search: "Click a node. Or choose one by the arrow keys, and press Enter.",
 }
-const KEY = [["●", "mesh"], ["■", "interior"], ["▲", "surface"]]
-const WINDING_KEY = [["−1", "negative"], ["0", "idle"], ["1", "interior"]]
+const KINDS = [["●", "mesh", "mesh"], ["■", "interior", "interior"], ["▲", "surface", "surface"]]
+const NUMBERS = [["━", "negative", "−1"], ["━", "idle", "0"], ["━", "interior", "1"]]
+const KEY = {graph: KINDS, search: KINDS, winding: NUMBERS}
 const TILTING = 1100  // milliseconds
 const WIDE = 700
 const LOW = 420  // as a telephone on its side
@@ -106,14 +107,11 @@ export function flatScene(host) {
     place.tilt = 0
     tilting = null
     root.style.removeProperty("--tilt")
-    const isWinding = now.mode === "winding"
-    const kinds = isWinding ? WINDING_KEY.map(([text, name]) => ["━", name, text])
-      : KEY.map(([glyph, name]) => [glyph, name, name])
-    key.replaceChildren(...kinds.map(([glyph, name, text]) =>
+    label.hidden = now.mode !== "winding"
+    key.replaceChildren(...(KEY[now.mode] ?? []).map(([glyph, name, text]) =>
       element("span", {style: {color: now.colors[name]}}, glyph, element("i", {}, text))),
-    ...isWinding ? [] : [`lengths in ${now.data.unit}`])
-    key.hidden = now.mode === "rays"
-    label.hidden = !isWinding
+    label.hidden ? `lengths in ${now.data.unit}` : "")
+    key.hidden = !KEY[now.mode]
     queue.hidden = now.mode !== "search" || scene.asking
     tau.value = String(scene.tau)
     help.textContent = helpOf()

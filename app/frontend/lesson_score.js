@@ -2,8 +2,6 @@
 
 import {lengthText} from "./text.js"
 
-const percent = (part) => `${Math.round(100 * part)}%`
-
 /**
  * Returns null where nothing is right or wrong, as where a person only tries something.
  * @param {Answer} answer what the step asks for  @param {any} value what a person answered
@@ -19,8 +17,9 @@ export function judge(answer, value, scores = {}) {
     return {right, text: `You said ${lengthText(Number(value))}. ${measured}`}
   }
   if (kind === "paint" && typeof value === "number") {
-    const others = Object.entries(scores).map(([name, part]) => `, to ${percent(part)} with “${name}”`)
-    const text = `Your paint agrees to ${percent(value)} with what should follow${others.join("")}.`
+    const to = (part, name) => `to ${Math.round(100 * part)}% with ${name}`
+    const others = Object.entries(scores).map(([name, part]) => `, ${to(part, `“${name}”`)}`)
+    const text = `Your paint agrees ${to(value, "what should follow")}${others.join("")}.`
     return {right: value >= expected, text}
   }
   if (kind === "paint" || expected === undefined) { return null }

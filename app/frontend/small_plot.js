@@ -10,7 +10,7 @@ import {element} from "./elements.js"
 import {lengthText, weightText} from "./text.js"
 
 const [WIDTH, HEIGHT] = [300, 130]
-const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 10, 30]
+const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 20, 30]
 const DASHES = ["none", "6 3", "2 3", "8 3 2 3"]
 
 const FRACTIONS = {0: "0", 0.25: "¼", 1: "1"}
@@ -19,7 +19,7 @@ const FRACTIONS = {0: "0", 0.25: "¼", 1: "1"}
 export function fractionText(part) {
   const below = Math.round(1 / part)
   const isUnit = below <= 16 && Math.abs(part * below - 1) < 1e-6
-  return FRACTIONS[part.toFixed(6) * 1] ?? (isUnit ? `1/${below}` : weightText(part))
+  return FRACTIONS[Number(part.toFixed(6))] ?? (isUnit ? `1/${below}` : weightText(part))
 }
 
 const KINDS = {
@@ -32,7 +32,8 @@ const KINDS = {
       dots: [...marks, ...named.map(([name, at]) => ({name, at, chosen: false, isNamed: true}))],
       x: {label: `distance in ${unit}`, from: 0, to: curve.points.at(-1)[0], ticks: [0, d, 2 * d],
         text: (x) => ({[d]: `d = ${lengthText(d)}`, [2 * d]: "2d"})[x] ?? "0"},
-      y: {label: "weight, nearest bone: 1", from: 0, to: 1, ticks: [0, 0.25, 1], text: fractionText},
+      y: {label: "weight, nearest bone: 1", from: 0, to: 1, ticks: [0, 0.25, 1],
+        text: fractionText},
       says: [...marks.map(({name, at}) => `${name} ${weightText(at[1])} at ${lengthText(at[0])}`),
         `${fractionText(twice[1])} at 2d`],
     }

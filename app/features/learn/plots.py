@@ -39,14 +39,14 @@ def _falloff(state: Any) -> dict[str, Any] | None:
     distance = np.asarray(binding.distances.at(slice(None), vertex)).ravel() * lattice.size
     nearest = np.argsort(distance, kind="stable")[:MAX_MARKS]
     nearest = nearest[np.isfinite(distance[nearest])]
-    weights, d = binding.weights[vertex] / binding.weights[vertex].max(), distance.min()
-    if not 0 < d < np.inf:
+    d, most = float(distance.min()), binding.weights[vertex].max()
+    if not (0 < d < np.inf and most):
         return None
+    weights = binding.weights[vertex] / most
     places = np.append(np.linspace(d, max(1.1 * distance[nearest].max(), 2.2 * d), POINTS), 2 * d)
+    size = lattice.diagonal * lattice.size
     if state.falloff == "paper":
-        pairs = paper_kernel(
-            np.stack([np.full_like(places, d), places]), lattice.diagonal * lattice.size, state.alpha
-        )
+        pairs = paper_kernel(np.stack([np.full_like(places, d), places]), size, state.alpha)
         title, curve = "paper's falloff", pairs[:, 1] / pairs[:, 0]
     else:
         title, curve = "animation's falloff, before smoothing", (d / places) ** POWER
@@ -57,11 +57,11 @@ def _falloff(state: Any) -> dict[str, Any] | None:
         "twice": [2 * d, float(curve[-1])],
         "marks": [
             {
-                "name": names[joint],
-                "at": [float(distance[joint]), float(weights[joint])],
-                "chosen": bool(joint == state.joint),
+                "name": names[j],
+                "at": [distance[j], weights[j]],
+                "chosen": j == state.joint,
             }
-            for joint in nearest.tolist()
+            for j in nearest.tolist()
         ],
     }
 
