@@ -22,12 +22,9 @@ export class Rays {
     this.identity = `${scene.mode} ${scene.data.box}`  // alike where only signs of faces change
     const {of, way, point} = scene.marked ?? {}
     this.turn(this.ways[0].length ? 0 : 1)
-    if (of === this.identity) {
-      this.way = way
-      this.press(point)
-    } else if (scene.mode === "winding") {
-      this.findNotable()
-    }
+    const isSame = of === this.identity
+    if (isSame) { this.way = way; this.press(point) }
+    if (!isSame && scene.mode === "winding") { this.findNotable() }
     this.isNear = innerWidth < SLIM
   }
 
@@ -54,9 +51,8 @@ export class Rays {
     const from = this.index[this.way]
     for (let i = Math.min(from, to); i <= Math.max(from, to); i++) { this.scene.lit.add(rays[i]) }
     this.index[this.way] = to
-    const {pieces} = this.scene.ray = rays[to]
-    this.scene.at = clamped(at, pieces[0][0], pieces.at(-1)[1])
-    const {ray, at: along} = this.scene
+    const ray = this.scene.ray = rays[to]
+    const along = this.scene.at = clamped(at, ray.pieces[0][0], ray.pieces.at(-1)[1])
     const point = this.way ? [ray.at, along] : [along, ray.at]
     this.scene.marked = {of: this.identity, way: this.way, point}
   }
@@ -89,11 +85,10 @@ export class Rays {
 
   buttons() {
     const {scene} = this
-    const light = () => { this.ways[this.way].forEach((ray) => scene.lit.add(ray)) }
-    const all = ["Light all", light]
+    const light = ["Light all", () => this.ways[this.way].forEach((ray) => scene.lit.add(ray))]
     if (scene.asking) { return [["This point", () => this.answer()], closer(this)] }
     const turn = ["Turn rays", () => this.turn(1 - this.way)]
-    return [turn, ...scene.mode === "rays" ? [all] : [], closer(this)]
+    return [turn, ...scene.mode === "rays" ? [light] : [], closer(this)]
   }
 
   // All, or what is as high as the mark.

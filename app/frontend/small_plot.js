@@ -13,13 +13,12 @@ const [WIDTH, HEIGHT] = [300, 130]
 const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 20, 30]
 const DASHES = ["none", "6 3", "2 3", "8 3 2 3"]
 
-const FRACTIONS = {0: "0", 0.25: "¼", 1: "1"}
-
 /** A part of one, as a fraction where it has a short one. @param {number} part */
 export function fractionText(part) {
   const below = Math.round(1 / part)
   const isUnit = below <= 16 && Math.abs(part * below - 1) < 1e-6
-  return FRACTIONS[Number(part.toFixed(6))] ?? (isUnit ? `1/${below}` : weightText(part))
+  const short = {0: "0", 0.25: "¼", 1: "1"}[Number(part.toFixed(6))]
+  return short ?? (isUnit ? `1/${below}` : weightText(part))
 }
 
 const KINDS = {
