@@ -12,6 +12,7 @@ from ..document.state import PANELS, State
 from ..features.brush import strokes as brush
 from ..features.character import camera_on_bone, first_joint
 from ..features.correct.choices import applied, changed_only, changes
+from ..features.learn.writing import save_view
 from ..features.pairs import results as pairs
 from ..features.select import actions as selecting
 
@@ -31,6 +32,7 @@ def act(session: Session, name: str) -> None:
         "undo": lambda: revisit(session, session.history.undo()),
         "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
+        "step": lambda: save_view(session),
         "rendered": lambda: state.param.update(rendered=not state.rendered),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
