@@ -52,7 +52,8 @@ class Document:
 
     def allow(self) -> None:
         """Reset the memory budget of reading by the present size."""
-        self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
+        sizes = {id(buffer): len(buffer) for buffer in self.buffers}  # some may be the same
+        self.allowance = Allowance(self.size + sum(sizes.values()))
 
     def forget(self) -> None:
         """Clear read caches: what was checked or decoded, by the number of its accessor or mesh."""
@@ -154,8 +155,11 @@ def read_document(path: Path) -> Document:
     if not str(asset["version"]).startswith("2."):
         raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
     files: dict[str, bytes] = {}
-    for i, buffer in enumerate(document.items("buffers")):
-        document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
+    buffers = document.items("buffers")
+    lengths = [whole(one, "byteLength", f"buffers[{i}]") for i, one in enumerate(buffers)]
+    document.buffers = [b""] * len(buffers)
+    for i in sorted(range(len(buffers)), key=lambda i: -lengths[i]):
+        document.buffers[i] = _buffer_bytes(path, buffers[i], i, lengths[i], binary, files)
     for image in document.items("images"):  # saving copies them
         beside(path, str(image.get("uri", "data:")))
     document.allow()
@@ -208,25 +212,30 @@ def _no_constant(name: str) -> float:
 
 
 def _buffer_bytes(
-    path: Path, buffer: dict[str, Any], i: int, binary: bytes | None, files: dict[str, bytes]
+    path: Path,
+    buffer: dict[str, Any],
+    i: int,
+    length: int,
+    binary: bytes | None,
+    files: dict[str, bytes],
 ) -> bytes:
-    """Return the bytes of a buffer; `files` keeps what was read, for others that want the same."""
+    """Return the bytes of a buffer; `files` keeps what was read, for those that want less of it."""
     user = f"buffers[{i}]"
-    length = whole(buffer, "byteLength", user)
     if any(isinstance(x, dict) and x.get("fallback") is True for x in extensions(buffer).values()):
         return b""  # it is empty: its buffer views are compressed, in another buffer
     uri = buffer.get("uri")
     if uri is None:
         if i != 0 or binary is None:
             raise FileError(f"{user} has no data: neither a uri nor a binary chunk")
-        data = binary
+        data = binary[:length]
     else:
-        if len(files.get(str(uri), b"")) < max(length, 1):
-            files[str(uri)] = read_uri(path, uri, user, length)
-        data = files[str(uri)]
+        key = str(uri) if str(uri).startswith("data:") else str(beside(path, str(uri)))
+        if key not in files:
+            files[key] = read_uri(path, uri, user, max(length, 1))
+        data = files[key]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
-    return data[:length]
+    return data
 
 
 def read_uri(path: Path, uri: Any, user: str, most: int | None = None) -> bytes:

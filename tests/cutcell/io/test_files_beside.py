@@ -2,6 +2,7 @@
 
 import json
 import os
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -90,7 +91,24 @@ def test_no_more_is_read_than_a_buffer_announces(folder):
     assert len(read_bytes(folder / "data.bin", 7)) == 7
 
 
-def test_a_buffer_is_read_again_for_another_that_needs_more_of_it(folder):
+def test_buffers_of_one_file_take_it_once(folder):
+    path = document_with(folder)
+    with (folder / "data.bin").open("ab") as file:
+        file.truncate(10**6)
+    document = json.loads(path.read_text())
+    names = ["data.bin", "./data.bin", "%64ata.bin"]
+    document["buffers"] = [
+        {"uri": names[i % 3], "byteLength": 10**6 - abs(50 - i)} for i in range(100)
+    ]
+    path.write_text(json.dumps(document))
+    tracemalloc.start()
+    check_column(cutcell.load(path))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2e7
+
+
+def test_a_buffer_may_be_shorter_than_another_of_its_file(folder):
     path = document_with(folder)
     document = json.loads(path.read_text())
     whole = document["buffers"][0]
