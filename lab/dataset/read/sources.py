@@ -210,9 +210,7 @@ def _referenced(path: Path) -> dict[str, Path]:
         return {}  # the reader of glTF files reports the fault
     beside_it = sorted(file for file in {beside(path, name) for name in names} if file is not None)
     files = {file: regular_file(file, path.parent) for file in beside_it}
-    return {
-        file.relative_to(path.parent).as_posix(): real for file, real in files.items() if real
-    }
+    return {file.relative_to(path.parent).as_posix(): real for file, real in files.items() if real}
 
 
 def _named(sources: list[Source]) -> list[Source]:
