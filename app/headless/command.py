@@ -15,7 +15,6 @@ from cutcell.cli.options import (
     OptionalRigFile,
     SkeletonFile,
     chosen_method,
-    is_given,
     with_method,
     with_options,
 )
@@ -105,7 +104,7 @@ def render(
     scenes, film, process = required(
         "pictures need", "cutcell_app.headless", "cutcell_viewers.film", "cutcell_viewers.process"
     )
-    explicit = [name for name in context.params if is_given(context, name)]
+    explicit = [name for name in context.params if _is_given(context, name)]
     if lesson is not None or lesson_from is not None:
         _write_lesson(explicit, lesson, lesson_from, quiet)
         return
@@ -214,7 +213,7 @@ def _write_page(
         loaded.require_joints()
         joint = None if choices["bone"] is None else bone_index(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
-        binding = bind(loaded, options.get("resolution"), method=method, progress=progress)
+        binding = bind(loaded, options["resolution"], method=method, progress=progress)
         page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
         write_all({out: page.encode()})
     _report(out, "an interactive page, ", [*loaded.warnings, *binding.warnings], quiet)
@@ -268,3 +267,8 @@ def required(users: str, *modules: str) -> list[Any]:
             f"{users} libraries that are not installed ({error.name} is missing); "
             "install them by: pip install 'cutcell[app]'"
         ) from None
+
+
+def _is_given(context: typer.Context, option: str) -> bool:
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"

@@ -22,8 +22,7 @@ from .options import (
     Smoothing,
     Symmetric,
     TemplateName,
-    chosen_method,
-    over_stored,
+    layered_method,
     with_method,
 )
 from .report import described, report_rows
@@ -106,8 +105,7 @@ def bind(
     from .summary import summarize_weights
 
     edits = None if layers is None else load_edits(layers)
-    chosen = over_stored(options, edits)
-    how = chosen_method(chosen)
+    how, resolution = layered_method(options, edits)
     touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
     fits = None if template is None else check_template(template)
     check_output(out)
@@ -129,7 +127,7 @@ def bind(
     with progress_bars(quiet) as progress:
         binding = compute(
             loaded,
-            chosen.get("resolution"),
+            resolution,
             method=how,
             **touches,
             edits=edits,
@@ -138,7 +136,7 @@ def bind(
         )
     dropped: list[str] = []
     how = binding.method
-    is_open = "max_influences" not in options and how.max_influences is None
+    is_open = options["max_influences"] is None and how.max_influences is None
     if is_open and out.suffix.lower() in GLTF:
         binding, dropped = _limited(loaded, binding, edits, touches)
         how = how.with_options(max_influences=GLTF_INFLUENCES)
@@ -159,7 +157,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": chosen.get("method", "animation"),
+        "method": options["method"] or "animation",
         "parameters": {**asdict(how), **touches},
         "layers": None if layers is None else str(layers),
         "template": template,

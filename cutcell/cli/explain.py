@@ -12,15 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import (
-    Json,
-    LayersFile,
-    RigFile,
-    SkeletonFile,
-    chosen_method,
-    over_stored,
-    with_method,
-)
+from .options import Json, LayersFile, RigFile, SkeletonFile, layered_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -65,19 +57,13 @@ def explain(
     from ..io import load
 
     stored = None if layers is None else load_edits(layers)
-    chosen = over_stored(options, stored)
+    how, resolution = layered_method(options, stored)
     loaded = load(rig, skeleton=skeleton)
     if stored is not None:
         loaded = with_base(loaded)
     with progress_bars(quiet=json) as progress:
         explanation = compute(
-            loaded,
-            vertex,
-            chosen.get("resolution"),
-            joint=joint,
-            method=chosen_method(chosen),
-            edits=stored,
-            progress=progress,
+            loaded, vertex, resolution, joint=joint, method=how, edits=stored, progress=progress
         )
     if json:
         print_json({"input": str(rig), **explanation.to_dict(), "warnings": list(loaded.warnings)})

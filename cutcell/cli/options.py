@@ -156,31 +156,36 @@ Lock = Annotated[
     ),
 ]  # fmt: skip
 
+_METHOD = (
+    "--method", "M",
+    "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
+)  # fmt: skip
+_RESOLUTION = (
+    "--resolution -r", "R",
+    "Rays along the longest side of the mesh. More rays separate close parts better, but take"
+    " more time and memory.",
+)  # fmt: skip
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
-    "method": (
-        str, "animation", "--method", "M",
-        "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
-    ),
-    "resolution": (
-        int, 64, "--resolution -r", "R",
-        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
-        " more time and memory.",
-    ),
+    "method": (str | None, None, *_METHOD[:-1], f"{_METHOD[-1]} Default: animation."),
+    "resolution": (int | None, None, *_RESOLUTION[:-1], f"{_RESOLUTION[-1]} Default: 64."),
     "connectivity": (
         str | None, None, "--connectivity", "C",
         "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
         " any: at any angle, so that distances are geodesic. Default: any; 6 with --method paper.",
     ),
     "winding_threshold": (
-        float, 0.5, "--winding-threshold", "T",
+        float | None, None, "--winding-threshold", "T",
         "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
-        " open mesh.",
+        " open mesh. Default: 0.5.",
     ),
     "orient": (
-        bool, True, "--orient/--no-orient", "",
-        "Treat inverted faces as flipped, or use all faces as they are in the file.",
+        bool | None, None, "--orient/--no-orient", "",
+        "Treat inverted faces as flipped, which is the default, or use all faces as they are in the"
+        " file.",
     ),
-    "samples": (int, 5, "--samples", "N", "Number of sources along each bone."),
+    "samples": (
+        int | None, None, "--samples", "N", "Number of sources along each bone. Default: 5.",
+    ),
     "leaf": (
         str | None, None, "--leaf", "L",
         "End of each bone. point, extend: at the child joints; a joint without children is a point,"
@@ -203,11 +208,13 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         " all with --method paper, but 4 in glTF files.",
     ),
     "threshold": (
-        float, 0.0, "--threshold", "W",
-        "Weights below this are dropped, and the rest is scaled to sum to 1.",
+        float | None, None, "--threshold", "W",
+        "Weights below this are dropped, and the rest is scaled to sum to 1. Default: 0.",
     ),
 }  # fmt: skip
-"""Type, default, flags, placeholder and help of each option of `Method`, by its field."""
+"""Type, default, flags, placeholder and help of each option of `Method`, by its field.
+
+The default is None, so that one that is given counts, also where it equals the method's."""
 
 
 def _annotated(
@@ -221,34 +228,22 @@ if TYPE_CHECKING:
     Resolution = int
     MethodChoice = str
 else:
-    Resolution = _annotated(*METHOD_OPTIONS["resolution"])
-    MethodChoice = _annotated(*METHOD_OPTIONS["method"])
+    Resolution = _annotated(int, 64, *_RESOLUTION)
+    MethodChoice = _annotated(str, "paper", *_METHOD)
 
 
 def with_options(
-    name: str, table: Mapping[str, tuple[Any, ...]], only_given: bool = False
+    name: str, table: Mapping[str, tuple[Any, ...]]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Replace a command's parameter of a name by options, which it gets as a dictionary.
-
-    With `only_given` the dictionary lacks those that the command line leaves out.
-    """
+    """Replace a command's parameter of a name by options, which it gets as a dictionary."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @wraps(command)
         def run(**values: Any) -> None:
-            chosen = {key: values.pop(key) for key in table}
-            if only_given:
-                context = values["context"] if has_context else values.pop("context")
-                chosen = {key: chosen[key] for key in table if is_given(context, key)}
-            command(**{name: chosen}, **values)
+            command(**{name: {key: values.pop(key) for key in table}}, **values)
 
-        declared = inspect.signature(command, eval_str=True).parameters
-        has_context = "context" in declared
         parameters: list[inspect.Parameter] = []
-        if only_given and not has_context:
-            kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
-            parameters = [inspect.Parameter("context", kind, annotation=typer.Context)]
-        for parameter in declared.values():
+        for parameter in inspect.signature(command, eval_str=True).parameters.values():
             if parameter.name != name:
                 parameters.append(parameter)
                 continue
@@ -263,18 +258,8 @@ def with_options(
 
 
 def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Replace a command's parameter `options` by options of the method; all when none is named.
-
-    The dictionary holds those that the command line gives, also where they equal their defaults.
-    """
-    table = {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS}
-    return with_options("options", table, only_given=True)
-
-
-def is_given(context: typer.Context, option: str) -> bool:
-    """Return whether the command line gives an option."""
-    source = context.get_parameter_source(option)
-    return source is not None and source.name == "COMMANDLINE"
+    """Replace a command's parameter `options` by options of the method; all when none is named."""
+    return with_options("options", {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS})
 
 
 def chosen_method(options: Mapping[str, Any]) -> Method:
@@ -291,7 +276,12 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
     return method_of(check_choice("method", values.pop("method", "animation"), METHODS), **values)
 
 
-def over_stored(options: Mapping[str, Any], edits: Edits | None) -> dict[str, Any]:
-    """Return the options that are stored with edits, replaced by those of the command line."""
-    stored = {} if edits is None or "method" in options else edits.method
-    return {name: "all" if value is None else value for name, value in stored.items()} | {**options}
+def layered_method(options: Mapping[str, Any], edits: Edits | None) -> tuple[Method, int | None]:
+    """Return the method that is stored with edits, with other options of the command line.
+
+    Also returns the resolution if either has one.
+    """
+    chosen = {name: value for name, value in options.items() if value is not None}
+    stored = {} if edits is None or "method" in chosen else edits.method
+    stored = {name: "all" if value is None else value for name, value in stored.items()} | chosen
+    return chosen_method(stored), stored.get("resolution")

@@ -14,7 +14,7 @@ from ..errors import SkeletonError
 from ..geodesics import BoneDistances
 from ..geodesics.bone_extents.skins import method_per_character
 from ..graph import CutCellGraph, build_graph
-from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
+from ..graph.fingerprint import differences, distance_fingerprint, graph_fingerprint, require_same
 from ..graph.lattice import Lattice
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
@@ -189,7 +189,7 @@ def layer_context(rig: Rig, context: Context, reach: Computed, layer: Layer) -> 
         graph = build_graph(rig.mesh, method=method, progress=context.progress)
     else:
         expected = distance_fingerprint(rig.skeleton, method, rig.allowed)
-        is_same = expected.items() <= context.distances.fingerprint.items()
+        is_same = not differences(context.distances.fingerprint, expected)
         if is_same and joints_measured(content, method) == joints_measured(reach, context.method):
             distances = context.distances
     steps = computed_steps(rig, method, content, graph, distances, vertices)

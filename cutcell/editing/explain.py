@@ -12,12 +12,7 @@ from ..geodesics import FALLBACK_REASONS, PIECES, BoneDistances, trace_path
 from ..geodesics.bone_extents.skins import method_per_character
 from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
-from ..graph.fingerprint import (
-    distance_fingerprint,
-    graph_fingerprint,
-    measured_fingerprint,
-    require_same,
-)
+from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
 from ..rig.checks import check_integer
@@ -199,8 +194,8 @@ def explain(
         method = method_per_character(rig, method, None if distances is None else distances.graph)
     if distances is not None:
         expected = graph_fingerprint(rig.mesh, method)
-        expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
-        expected |= measured_fingerprint(*joints_measured(edits.reach, method))
+        measured = joints_measured(edits.reach, method)
+        expected |= distance_fingerprint(rig.skeleton, method, rig.allowed, *measured)
         require_same("distances", distances.fingerprint, expected)
     context = Context(method, rig.allowed, progress)
     rows: dict[str, NDArray[np.float64]] = {}

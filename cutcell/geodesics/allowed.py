@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -11,12 +9,8 @@ from ..errors import WeightsError
 from ..graph import CutCellGraph
 from ..rig.checks import as_array
 from ..runtime.progress import Progress
-from .bones import Bones, Sources, least_of_joints, per_joint
-from .fallback import straight_to_nearest
+from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
-
-if TYPE_CHECKING:
-    from .distances import BoneDistances
 
 
 def check_allowed(
@@ -32,35 +26,6 @@ def check_allowed(
             f"({len(bad)} vertices are so); check which joints its skin lists"
         )
     return allowed
-
-
-def nearest_allowed(
-    distances: BoneDistances, vertices: NDArray[np.intp], allowed: NDArray[np.bool_]
-) -> NDArray[np.intp]:
-    """Return the nearest joint that each of some vertices (v,) may follow, shape (v,).
-
-    If the distances are those of other joints, all are measured; straight where no path leads.
-
-    Shapes: allowed (v, j).
-    """
-
-    def straight(some: NDArray[np.intp]) -> NDArray[np.float64]:
-        points, bones = distances.graph.nodes[distances.graph.vertex_node[some]], distances.bones
-        distance = straight_to_nearest(points, bones, len(bones.joint))
-        return per_joint(least_of_joints(distance, bones), bones, allowed.shape[1])
-
-    nearest = np.full(len(vertices), -1)
-    measures = (
-        lambda some: distances.joint[:, some],
-        lambda some: distances.all_joints()[:, some],
-        straight,
-    )
-    for measure in measures:
-        rest = np.flatnonzero(nearest < 0)
-        if len(rest):
-            distance = np.where(allowed[rest].T, measure(vertices[rest]), np.inf)
-            nearest[rest] = np.where(np.isinf(distance.min(axis=0)), -1, distance.argmin(axis=0))
-    return nearest
 
 
 def allowed_distances(

@@ -12,12 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError, SkeletonError
 from ..graph import CutCellGraph
-from ..graph.fingerprint import (
-    NEAREST,
-    Fingerprint,
-    distance_fingerprint,
-    measured_fingerprint,
-)
+from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
@@ -182,7 +177,7 @@ def bone_distances(
     skeleton: SkeletonLike,
     *,
     method: Method | MethodName = ANIMATION,
-    nearest: int = NEAREST,
+    nearest: int = 3,
     nearest_joints: int | None = None,
     within: float | None = None,
     allowed: NDArray[np.bool_] | None = None,
@@ -249,7 +244,8 @@ def bone_distances(
     check_positions(skeleton.joints, "joint", SkeletonError)
     solver = graph if isinstance(graph, BoneDistanceSolver) else BoneDistanceSolver(graph)
     graph = solver.graph
-    check_units(skeleton, graph.lattice.bounds)
+    offset = graph.lattice.offset
+    check_units(skeleton, graph.lattice.to_file([offset, 1 - offset]))
     if graph.connectivity != "any":
         nearest_joints = None
     progress("distances", 0.0)
@@ -280,11 +276,9 @@ def bone_distances(
     distances = BoneDistances(
         joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )
-    if graph.fingerprint:
-        measured = measured_fingerprint(nearest_joints, within)
-        own = distance_fingerprint(skeleton, method, allowed, nearest) | measured
-        distances.identified({**graph.fingerprint, **own})
-    return distances
+    measured = (nearest_joints, within) if nearest_joints else (None, np.inf)
+    fingerprint = distance_fingerprint(skeleton, method, allowed, *measured, nearest)
+    return distances.identified(graph.fingerprint and {**graph.fingerprint, **fingerprint})
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:

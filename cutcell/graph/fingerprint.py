@@ -18,16 +18,17 @@ Fingerprint = Mapping[str, Any]
 """Hashes of arrays, as bytes, and values of options, by name."""
 APPROXIMATE: Fingerprint = {"approximate": True}
 """Of distances while joints are moved: they equal no others."""
-NEAREST = 3
-"""Default number of bones that a vertex without a path follows."""
-
 AT_LEAST = ("nearest joints", "within")
 """Entries of which more is as good: what is measured from more joints, or farther."""
 
 
-def mesh_fingerprint(mesh: TriangleMesh) -> dict[str, Any]:
-    """Return the fingerprint of a mesh."""
-    return _digests("mesh", mesh)
+def data_fingerprint(*data: TriangleMesh | Skeleton) -> dict[str, Any]:
+    """Return the fingerprint of all fields. Names count: they decide about bones."""
+    return {
+        f"{type(one).__name__} {field.name}": _digest(getattr(one, field.name))
+        for one in data
+        for field in fields(one)
+    }
 
 
 def graph_fingerprint(
@@ -37,29 +38,23 @@ def graph_fingerprint(
     options = {
         name: getattr(method, name) for name in ("resolution", *GraphOptions.__annotations__)
     }
-    return mesh_fingerprint(mesh) | options | {"rays": rays, "winding": winding}
-
-
-def skeleton_fingerprint(skeleton: Skeleton) -> dict[str, Any]:
-    """Return the fingerprint of a skeleton. Names count: they decide about bones."""
-    return _digests("skeleton", skeleton)
+    return data_fingerprint(mesh) | options | {"rays": rays, "winding": winding}
 
 
 def distance_fingerprint(
-    skeleton: Skeleton, method: Method, allowed: NDArray[np.bool_] | None, nearest: int = NEAREST
+    skeleton: Skeleton,
+    method: Method,
+    allowed: NDArray[np.bool_] | None,
+    nearest_joints: int | None = 1,
+    within: float = 1.0,
+    nearest: int = 3,
 ) -> dict[str, Any]:
-    """Return what distances depend on besides their graph and how far they are measured."""
+    """Return what distances depend on besides their graph, see `bone_distances`."""
     options = {name: getattr(method, name) for name in DistanceOptions.__annotations__}
     allowed = None if allowed is None or allowed.all() else allowed
-    permitted = {"permitted joints": _digest(allowed)}
-    return skeleton_fingerprint(skeleton) | options | permitted | {"nearest": nearest}
-
-
-def measured_fingerprint(nearest_joints: int | None, within: float) -> dict[str, float]:
-    """Return from how many joints, None for all, and how far distances are measured."""
-    if nearest_joints is None:
-        return dict.fromkeys(AT_LEAST, np.inf)
-    return dict(zip(AT_LEAST, (nearest_joints, within), strict=True))
+    measured = dict(zip(AT_LEAST, (nearest_joints or np.inf, within), strict=True))
+    own = options | measured | {"nearest": nearest, "permitted joints": _digest(allowed)}
+    return data_fingerprint(skeleton) | own
 
 
 def require_same(what: str, actual: Fingerprint, expected: Fingerprint) -> None:
@@ -68,22 +63,21 @@ def require_same(what: str, actual: Fingerprint, expected: Fingerprint) -> None:
         raise ParameterError(f"{what} changed after it was computed; leave it out")
     if actual == APPROXIMATE:
         raise ParameterError(f"{what} are approximate, of joints that were moved; leave them out")
-    differences = [
+    if different := differences(actual, expected):
+        raise ParameterError(
+            f"{what} does not fit: {'; '.join(different)}. Leave it out, and it is computed"
+        )
+
+
+def differences(actual: Fingerprint, expected: Fingerprint) -> list[str]:
+    """Name what differs from the expected entries."""
+    return [
         f"other {name}"
         if isinstance(value, bytes | None)
         else f"{name}={actual.get(name)!r}, expected {value!r}"
         for name, value in expected.items()
         if actual.get(name) != value and not (name in AT_LEAST and actual.get(name, 0) > value)
     ]
-    if differences:
-        raise ParameterError(
-            f"{what} does not fit: {'; '.join(differences)}. Leave it out, and it is computed"
-        )
-
-
-def _digests(what: str, data: Any) -> dict[str, bytes | None]:
-    """Hash each field of a mesh or a skeleton."""
-    return {f"{what} {field.name}": _digest(getattr(data, field.name)) for field in fields(data)}
 
 
 def _digest(array: Any) -> bytes | None:

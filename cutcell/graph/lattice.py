@@ -62,11 +62,6 @@ class Lattice:
         extent = (high - low) / size
         return cls(resolution, low, size, (1 - extent) / 2, float(np.linalg.norm(extent)))
 
-    @property
-    def bounds(self) -> NDArray[np.float64]:
-        """Lowest and highest corner of the mesh's bounding box in file units, shape (2, 3)."""
-        return self.to_file([self.offset, 1 - self.offset])
-
     def to_unit(self, points: ArrayLike) -> NDArray[np.float64]:
         """Bring points (..., 3) from the file's units into the unit cube."""
         return (np.asarray(points, np.float64) - self.low) / self.size + self.offset

@@ -7,9 +7,9 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
+from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
-from ..geodesics.allowed import check_allowed, nearest_allowed
+from ..geodesics.allowed import check_allowed
 from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
@@ -62,7 +62,7 @@ def skinning_weights(
     ParameterError
         A parameter is out of its range, or the distances are of too few joints.
     WeightsError
-        `allowed` has the wrong shape or leaves a vertex without any joint.
+        `allowed` has the wrong shape, or leaves a vertex only joints without a distance.
 
     References
     ----------
@@ -116,7 +116,13 @@ def permit(context: Context) -> NDArray[np.float64]:
     assert context.allowed is not None
     permitted = np.where(context.allowed, context.weights, 0.0)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    permitted[lost, nearest_allowed(context.distances, lost, context.allowed[lost])] = 1
+    distance = np.where(context.allowed[lost].T, context.distances.joint[:, lost], np.inf)
+    if np.isinf(distance.min(axis=0)).any():
+        raise WeightsError(
+            "a vertex has no distance of a joint that it may follow; pass the same `allowed` to "
+            "bone_distances"
+        )
+    permitted[lost, distance.argmin(axis=0)] = 1
     return permitted / permitted.sum(axis=1, keepdims=True)
 
 

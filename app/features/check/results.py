@@ -4,7 +4,7 @@ from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
 from cutcell.geodesics import BoneDistances
-from cutcell.graph.fingerprint import skeleton_fingerprint
+from cutcell.graph.fingerprint import data_fingerprint
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
@@ -70,7 +70,7 @@ def _reusable(state: State) -> BoneDistances | None:
     if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
         return None
     distances: BoneDistances = state.binding.distances
-    of_rig = skeleton_fingerprint(state.rig.skeleton)
+    of_rig = data_fingerprint(state.rig.skeleton)
     return distances if of_rig.items() <= distances.fingerprint.items() else None
 
 

@@ -18,7 +18,7 @@ from cutcell.editing import Computed, Edits
 from cutcell.editing.binding_warnings import with_warnings
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
-from cutcell.graph.fingerprint import skeleton_fingerprint
+from cutcell.graph.fingerprint import data_fingerprint
 from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -75,7 +75,7 @@ def _bound_inputs(state: State) -> tuple[Any, ...] | None:
     return (
         _shown_with(state.rig),
         state.built_graph,
-        tuple(skeleton_fingerprint(state.rig.skeleton).values()),
+        tuple(data_fingerprint(state.rig.skeleton).values()),
         state.leaf,
         state.edits.reach,
         replace(cutcell.ANIMATION, falloff=state.falloff).reach_needed,

@@ -97,7 +97,7 @@ def test_distances_of_another_skeleton_are_refused(change):
     rig = bar()
     distances = cutcell.bind(rig, 16).distances
     cutcell.explain(rig, 0, 16, distances=distances)
-    with pytest.raises(ParameterError, match="distances does not fit: other skeleton"):
+    with pytest.raises(ParameterError, match="distances does not fit: other Skeleton"):
         cutcell.explain(change(rig), 0, 16, distances=distances)
 
 
