@@ -15,7 +15,7 @@ from .cutcell_graph import CutCellGraph
 from .fingerprint import graph_fingerprint
 from .libraries import CASTERS, fast_winding_numbers
 from .memory import check_hits
-from .rays import cast_all_rays
+from .rays import cast_all_rays, part_at_contacts
 from .segments import PointwiseWindingNumbers, RayWindingNumbers, inside_intervals
 from .surface import prepare_surface
 from .winding.treecode.winding_numbers import TreecodeWindingNumbers
@@ -91,6 +91,7 @@ def build_graph(
             hits = cast_all_rays(*shape, share_of(report, 0.05, 0.2))
         else:
             hits = [CASTERS[rays](*shape, axis) for axis in range(3)]
+        hits = [part_at_contacts(along, surface.part) for along in hits]
         report(0.2)
         if winding == "exact":
             numbers: RayWindingNumbers = TreecodeWindingNumbers(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MeshError
+from ..geometry.closed_parts import separate_closed_parts
 from ..geometry.edges import find_edges
 from ..geometry.weld import weld
 from ..rig import TriangleMesh
@@ -33,6 +34,8 @@ class Surface:
     vertex_node : array, shape (v,), int32
         The welded vertex of each vertex of the mesh.
     faces : array, shape (m, 3), int32
+    part : array, shape (m,), int32
+        The closed part that each face belongs to, or -1.
     edges : array, shape (e, 2), int32
     boundary : Boundary
     inverted : array, shape (m,), bool
@@ -43,6 +46,7 @@ class Surface:
     vertices: NDArray[np.float64]
     vertex_node: NDArray[np.int32]
     faces: NDArray[np.int32]
+    part: NDArray[np.int32]
     edges: NDArray[np.int32]
     boundary: Boundary
     inverted: NDArray[np.bool_]
@@ -74,6 +78,8 @@ def prepare_surface(
     vertices = lattice.to_unit(mesh.vertices)
     _check_layers(vertices, mesh.faces)
     vertices, vertex_node = weld(vertices)
+    partner = find_edges(vertex_node[mesh.faces]).partner
+    vertices, vertex_node, part = separate_closed_parts(vertices, vertex_node, mesh.faces, partner)
     faces = vertex_node[mesh.faces]
     edges, incidence, partner = find_edges(faces)
     inverted = np.zeros(len(faces), np.bool_)
@@ -83,7 +89,7 @@ def prepare_surface(
         faces = flipped(faces, inverted)
         edges, incidence, _ = find_edges(faces)
     boundary = boundary_of(edges, incidence)
-    return Surface(lattice, vertices, vertex_node, faces, edges, boundary, inverted)
+    return Surface(lattice, vertices, vertex_node, faces, part, edges, boundary, inverted)
 
 
 def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
