@@ -31,12 +31,12 @@ def separate_closed_parts(
     partner = _pair_around_edges(vertices, corners, partner, is_whole)
     start, end, is_paired = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), partner != NONE
     n, k, used = len(index), len(vertices), np.unique(start[is_whole])
-    part = _label(n, [start, start[is_paired]], [end, start[partner[is_paired]]])
+    part = label(n, np.append(start, start[is_paired]), np.append(end, start[partner[is_paired]]))
     is_open = np.zeros(n + k, np.bool_)
     is_open[part[start[is_whole & ~is_paired]]] = True
     is_open[n + index[used[is_open[part[used]]]]] = True
     welded = used[is_open[n + index[used]]]
-    group = _label(n + k, [part[welded]], [n + index[welded]])
+    group = label(n + k, part[welded], n + index[welded])
     is_open_group = np.bincount(group, is_open) > 0
     group = group[part]
     closed = np.where(is_open_group[group], NONE, group)[faces[:, 0]].astype(np.int32)
@@ -55,11 +55,12 @@ def separate_closed_parts(
     return vertices[keys // (n + k)], np.searchsorted(keys, key).astype(np.int32), closed
 
 
-def _label(count: int, starts: list[NDArray], ends: list[NDArray]) -> NDArray[np.int32]:
-    start, end = np.concatenate(starts), np.concatenate(ends)
-    graph = coo_array((np.ones(len(start), np.bool_), (start, end)), shape=(count, count))
-    label: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return label
+def label(count: int, start: NDArray[np.integer], end: NDArray[np.integer]) -> NDArray[np.int32]:
+    """Label the connected components of `count` nodes with links from start to end, any shape."""
+    links = start.ravel(), end.ravel()
+    graph = coo_array((np.ones(start.size, np.bool_), links), shape=(count, count))
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
 
 
 def _pair_around_edges(
@@ -75,7 +76,7 @@ def _pair_around_edges(
     single = np.flatnonzero((partner == NONE) & is_whole)
     start, end = faces.ravel()[single], np.roll(faces, -1, axis=1).ravel()[single]
     low, high = np.minimum(start, end), np.maximum(start, end)
-    edge, first, which, uses = np.unique(
+    _, first, which, uses = np.unique(
         low * np.int64(len(vertices)) + high,
         return_index=True,
         return_inverse=True,
