@@ -61,6 +61,12 @@ KINDS = {
         "Flip them. Binding already treats them as flipped.",
         "flip them, and the normals that point inward",
     ),
+    "hollow-body": Kind(
+        "Hollow body", "warning",
+        "{faces:face/form} a second wall inside of the body, {part} of the surface: programs that "
+        "bind through the body find it empty.",
+        "Delete the inner surface. Binding already fills the body, but for the paper's method.",
+    ),
     "cracks": Kind(
         "Cracks", "note",
         "{edges:edge/lie} along open rims less than {width:.2g} from others that fit: seams that "
