@@ -106,6 +106,8 @@ def applied(own: Rig, edits: Edits) -> Rig:
             joints[joint] = one.position
     if not np.array_equal(deform, rig.skeleton.deform):
         rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    if rig.partners != edits.partners:
+        rig = replace(rig, partners=edits.partners)
     return rig.with_joints(joints)
 
 
@@ -156,7 +158,10 @@ def renamed(edits: Edits, name: str, new: str) -> Edits:
     was = None if one.added else one.was or name
     one = replace(one, was=None if was == new else was)
     edited = {now(key): other for key, other in {**edits.joints, name: one}.items()}
-    joints = {key: replace(other, parent=now(other.parent)) for key, other in edited.items()}
+    joints = {
+        key: replace(other, parent=now(other.parent), partner=now(other.partner))
+        for key, other in edited.items()
+    }
     return replace(edits.renamed(now), joints=joints)
 
 

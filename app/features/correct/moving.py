@@ -64,7 +64,8 @@ def mirror_of(session: Session) -> Mirror | None:
             return None
 
     skeleton = state.own_skeleton
-    key = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
+    key = repr((skeleton.joints.tobytes(), skeleton.parents.tolist(), skeleton.names,
+                state.rig.skeleton.deform.tolist(), state.rig.partners))  # fmt: skip
     mirror: Mirror | None = session.memo("mirror", (state.rig.mesh, key), find)
     return mirror
 

@@ -259,6 +259,64 @@ def test_one_side_is_taken_for_the_other():
         assert set(changed) == set(mirror.vertex[some])
 
 
+def legs():
+    """Return two legs; in each a twist bone and an IK control lie at one place, control first."""
+    vertices, faces = grid_box(8)
+    vertices = vertices * [0.4, 1, 1] + [0.3, 0, 0]
+    flipped = vertices * [-1, 1, 1]
+    mesh = TriangleMesh(
+        np.vstack([vertices, flipped]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
+    )
+    x, middle = 0.5, vertices[:, 1:].mean(axis=0)
+    names, joints, parents = ["root"], [[0, *middle]], [-1]
+    for side, sign in (("l", 1), ("r", -1)):
+        controls = [f"c_thigh_ik.{side}", f"thigh_twist.{side}"]
+        names += controls if side == "r" else controls[::-1]
+        names += [f"shin.{side}"]
+        joints += [[sign * x, *middle], [sign * x, *middle], [sign * (x + 0.1), *middle]]
+        parents += [0, 0, names.index(f"thigh_twist.{side}")]
+    deform = [not name.startswith("c_") for name in names]
+    random = np.random.default_rng(5)
+    weights = random.random((len(mesh.vertices), len(names))) * deform
+    weights /= weights.sum(axis=1, keepdims=True)
+    return Rig(mesh, Skeleton(np.array(joints), parents, names, deform=deform), weights)
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_no_weight_is_mirrored_onto_a_control(named):
+    rig = legs()
+    names = rig.skeleton.names
+    if not named:
+        names = [f"joint_{number}" for number in range(len(names))]
+        rig = replace(rig, skeleton=replace(rig.skeleton, names=names))
+    mirror = find_mirror(rig)
+    every = Selected(rig, rig.weights, np.arange(len(rig.weights)))
+    vertices, rows = mirrored(every, mirror, True)
+    assert not rows[:, ~rig.skeleton.deform].any()
+    result = rig.weights.copy()
+    result[vertices] = rows
+    np.testing.assert_allclose(result, result[mirror.vertex][:, mirror.swap], atol=1e-12)
+    carries = np.flatnonzero(rig.skeleton.deform[1:]) + 1
+    assert {mirror.how[joint] for joint in carries} == {"name" if named else "place"}
+
+
+def test_a_pair_that_was_set_counts_for_both():
+    rig = legs()
+    shin, other, twist = (
+        rig.skeleton.names.index(n) for n in ("shin.l", "shin.r", "thigh_twist.r")
+    )
+    mirror = find_mirror(replace(rig, partners={"shin.l": "thigh_twist.r"}))
+    assert (mirror.joint[shin], mirror.joint[twist], mirror.joint[other]) == (twist, shin, -1)
+    assert (mirror.how[shin], mirror.how[twist], mirror.how[other]) == ("set", "set", "")
+    alone = find_mirror(replace(rig, partners={"shin.l": ""}))
+    assert alone.joint[[shin, other]].tolist() == [-1, -1]
+    edits = cutcell.Edits(joints={"shin.l": cutcell.JointEdit(partner="thigh_twist.r")})
+    again = cutcell.Edits.from_json(edits.to_json())
+    assert find_mirror(cutcell.edited_rig(rig, again)).joint[shin] == twist
+    with pytest.raises(ParameterError, match="no joint"):
+        cutcell.edited_rig(rig, cutcell.Edits(joints={"shin.l": cutcell.JointEdit(partner="?")}))
+
+
 def test_joints_without_a_partner_stay_as_sides_are_swapped():
     mirror = find_mirror(small_rig())
     np.testing.assert_array_equal(mirror.swap, mirror.joint)
