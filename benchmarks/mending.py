@@ -11,6 +11,7 @@ bytes of a vertex that was not damaged. `--write` puts the table into docs/page/
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -47,7 +48,7 @@ def _attach_by_finding(hands: Hands, joint: str) -> None:
     """Attach the part that Check finds far from its joint to the nearest joint."""
     hands.panel("Check")
     hands.press("Parts that follow a far joint")
-    hands.press(f"Rigid to {joint}")
+    hands.press(re.compile(f"^Part \\d+: rigid to {joint}"))
 
 
 def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None = None) -> None:

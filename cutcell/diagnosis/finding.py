@@ -190,7 +190,8 @@ KINDS = {
     "far-parts": Kind(
         "Parts that follow a far joint", "warning",
         "{parts:part/follow} a joint that is far away, though another is near.",
-        "Make each rigid to the nearest joint, unless it is meant to follow the other.",
+        "Let each follow what it touches, an empty joint in it or the nearest one, unless it is "
+        "meant to follow the other.",
     ),
     "stretched-surface": Kind(
         "Surface that stretches", "warning",
@@ -286,6 +287,8 @@ class Finding:
         A pose that shows it, where the rest pose does not.
     parts : tuple of (int, int)
         A vertex of each connected component at fault, and the joint to make it rigid to.
+    empty : tuple of int
+        For each of these a joint without weight that lies in the component, -1 for none.
     """
 
     code: str
@@ -299,6 +302,7 @@ class Finding:
     repair: str = ""
     pose: Pose | None = None
     parts: tuple[tuple[int, int], ...] = ()
+    empty: tuple[int, ...] = ()
 
     @property
     def title(self) -> str:
@@ -319,6 +323,7 @@ class Finding:
             "joints": self.joints.tolist(),
             "repair": self.repair or None,
             "parts": [list(part) for part in self.parts],
+            "empty": list(self.empty),
             "pose": None if self.pose is None else asdict(self.pose),
         }
 
@@ -346,10 +351,10 @@ def found(
     kind, more = KINDS[code], len(details) - MAX_LINES
     lines = (*details[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))
     message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
-    parts = values.get("parts", ())
+    parts, empty = values.get("parts", ()), values.get("empty", ())
     yield Finding(
         code, severity or kind.severity, message, advice, **at, details=lines, repair=repair,
-        pose=pose, parts=parts,
+        pose=pose, parts=parts, empty=empty,
     )  # fmt: skip
 
 
