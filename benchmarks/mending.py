@@ -86,9 +86,7 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     "noise": lambda hands: _change_selection(
         hands, "FrontLowerLeg.L", "Vertices of the bone", "Take the right side"
     ),
-    "wrong eye": lambda hands: _bind_part(
-        hands, ["eyes", "LeftArm"], "Rigid, to one joint", "Head"
-    ),
+    "wrong eye": lambda hands: _attach_by_finding(hands, "Head"),
     "cape": lambda hands: _bind_part(hands, ["Knight_Cape"], "Rigid, to one joint", "chest"),
     "blade": lambda hands: _bind_part(
         hands, ["Knife", "upperleg.r"], "With the body it touches"
@@ -98,6 +96,9 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     ),
     "finger": lambda hands: _change_selection(
         hands, "hand.l", "Bone and its children", "Take the right side"
+    ),
+    "twist": lambda hands: _change_selection(
+        hands, "thigh_twist.l", "Vertices of the bone", "Take the right side"
     ),
 }  # fmt: skip
 """What a person does for each kind of damage."""

@@ -57,7 +57,7 @@ def about(state: Any) -> str:
     if state.lesson_step is not None and state.step not in state.answers:
         return ""
     problems = faults(state)
-    name = state.rig.name + ":" * bool(problems) if state.rig else ""
+    name = state.rig.name + ", in the file:" * bool(problems) if state.rig else ""
     return " ".join([LESSONS.get(state.demo) or name, *problems])
 
 

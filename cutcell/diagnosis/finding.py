@@ -16,7 +16,7 @@ SEVERITIES = ("error", "warning", "note")
 """The most severe first. Error: it breaks a binding or another program. Warning: most likely a
 fault. Note: information."""
 
-REMOVE = "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again."
+REMOVE = "Remove this weight, from these vertices or the whole rig, or bind again."
 CLEANED = "remove weight that is implausible through the body from these vertices"
 MAX_LINES = 40
 """Maximum number of details of a finding."""
@@ -63,9 +63,9 @@ KINDS = {
     ),
     "cracks": Kind(
         "Cracks", "note",
-        "{edges:edge/lie} along open rims less than {width:.2g} from others that fit: seams that "
-        "were not welded.",
-        "Merge vertices by a distance of {width:.2g}.",
+        "{edges:edge/lie} along open rims less than {width:.2g} (file units) from others that fit: "
+        "seams that were not welded.",
+        "Merge vertices by a distance of {width:.2g} (file units).",
     ),
     "holes": Kind(
         "Missing faces", "warning",
@@ -364,11 +364,3 @@ def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     return tuple(
         sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
     )
-
-
-def share(part: float, whole: float) -> str:
-    """Return a part of a whole in per cent: "12%", "0.3%", "under 0.1%"."""
-    ratio = part / whole if whole > 0 else 0.0
-    if 0 < ratio < 0.001:
-        return "under 0.1%"
-    return f"{ratio:.0%}" if ratio >= 0.1 else f"{ratio:.1%}"

@@ -14,10 +14,10 @@ from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
 from ..rig.deform_joints.conventions import kinds_by_name
-from ..runtime.display import count
+from ..runtime.display import count, share
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
 from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
-from .finding import Finding, found, share
+from .finding import Finding, found
 from .subject import Subject, bones_distance
 
 FAR = 1.5

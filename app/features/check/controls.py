@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.diagnosis.finding import TITLES
 from cutcell.diagnosis.leaks import moves_own_part
 from cutcell.editing import Attached, Edits, Filled, FromFile, JointEdit
 from cutcell.editing.layers.contents import Content
@@ -251,6 +252,7 @@ def _repairs(state: Any) -> list[Any]:
     if len(able) > 1:
         label = f"Repair all {len(able)} findings"
         rows.append(ui.button(label, partial(repair, codes=able), icon="build"))
+        rows.append(_line(f"{', '.join(TITLES[code] for code in able)}."))
     if state.repair is None:
         return rows
     done = [_line(text) for text in state.repair.done]

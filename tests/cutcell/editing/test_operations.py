@@ -13,7 +13,7 @@ from cutcell.editing.symmetry import Mirror, find_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from tests.app.small import small_rig
-from tests.bars import bar, grid_box
+from tests.bars import bar, grid_box, legs
 
 JOINTS = 5
 
@@ -259,29 +259,6 @@ def test_one_side_is_taken_for_the_other():
         assert set(changed) == set(mirror.vertex[some])
 
 
-def legs():
-    """Return two legs; in each a twist bone and an IK control lie at one place, control first."""
-    vertices, faces = grid_box(8)
-    vertices = vertices * [0.4, 1, 1] + [0.3, 0, 0]
-    flipped = vertices * [-1, 1, 1]
-    mesh = TriangleMesh(
-        np.vstack([vertices, flipped]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
-    )
-    x, middle = 0.5, vertices[:, 1:].mean(axis=0)
-    names, joints, parents = ["root"], [[0, *middle]], [-1]
-    for side, sign in (("l", 1), ("r", -1)):
-        controls = [f"c_thigh_ik.{side}", f"thigh_twist.{side}"]
-        names += controls if side == "r" else controls[::-1]
-        names += [f"shin.{side}"]
-        joints += [[sign * x, *middle], [sign * x, *middle], [sign * (x + 0.1), *middle]]
-        parents += [0, 0, names.index(f"thigh_twist.{side}")]
-    deform = [not name.startswith("c_") for name in names]
-    random = np.random.default_rng(5)
-    weights = random.random((len(mesh.vertices), len(names))) * deform
-    weights /= weights.sum(axis=1, keepdims=True)
-    return Rig(mesh, Skeleton(np.array(joints), parents, names, deform=deform), weights)
-
-
 @pytest.mark.parametrize("named", [True, False])
 def test_no_weight_is_mirrored_onto_a_control(named):
     rig = legs()
@@ -290,10 +267,12 @@ def test_no_weight_is_mirrored_onto_a_control(named):
         names = [f"joint_{number}" for number in range(len(names))]
         rig = replace(rig, skeleton=replace(rig.skeleton, names=names))
     mirror = find_mirror(rig)
-    every = Selected(rig, rig.weights, np.arange(len(rig.weights)))
+    weights = np.random.default_rng(6).random(rig.weights.shape) * rig.skeleton.deform
+    weights /= weights.sum(axis=1, keepdims=True)
+    every = Selected(rig, weights, np.arange(len(weights)))
     vertices, rows = mirrored(every, mirror, True)
     assert not rows[:, ~rig.skeleton.deform].any()
-    result = rig.weights.copy()
+    result = weights.copy()
     result[vertices] = rows
     np.testing.assert_allclose(result, result[mirror.vertex][:, mirror.swap], atol=1e-12)
     carries = np.flatnonzero(rig.skeleton.deform[1:]) + 1
