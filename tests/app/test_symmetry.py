@@ -87,7 +87,7 @@ def test_a_pair_of_joints_is_changed_undone_and_renamed(mapped, loop):
     assert ("hand.L \u2013 forearm.R", "set", 0.0) in [tuple(row) for row in rows.rows]
     state.joint = names.index("forearm.R")
     rename(mapped, names.index("forearm.R"), "claw")
-    assert state.edits.partners == {"hand.L": "claw"}
+    assert state.edits.partners == {"hand.L": "claw", "claw": "hand.L"}
     set_partner(mapped, 0)
     assert state.edits.partners == {}
     set_partner(mapped, 1)

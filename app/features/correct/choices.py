@@ -11,7 +11,7 @@ import param
 
 from cutcell.binding import Binding
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.restructure import restructured, restructured_skeleton
+from cutcell.editing.restructure import restructured_skeleton
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 
@@ -80,35 +80,6 @@ class Dragged:
 
     rig: Rig
     binding: Binding
-
-
-def applied(own: Rig, edits: Edits) -> Rig:
-    """Return a rig with the joints of its edits, where these put them.
-
-    Parameters
-    ----------
-    own : Rig
-        As it is where nothing is edited.
-    edits : Edits
-
-    Raises
-    ------
-    SkeletonError
-        No joint that may carry weight would be left, or one stands too far from the mesh.
-    """
-    rig = restructured(own, edits)
-    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
-    for joint, name in enumerate(rig.skeleton.names):
-        one = edits.joints.get(name)
-        if one is not None and one.deform is not None:
-            deform[joint] = one.deform
-        if one is not None and one.position is not None:
-            joints[joint] = one.position
-    if not np.array_equal(deform, rig.skeleton.deform):
-        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
-    if rig.partners != edits.partners:
-        rig = replace(rig, partners=edits.partners)
-    return rig.with_joints(joints)
 
 
 def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from cutcell.editing import JointEdit
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import CutcellError
+from cutcell.runtime.display import listed
 from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
@@ -18,8 +19,6 @@ from ..correct.commands import check_alone, correct
 from ..correct.moving import mirror_of
 from .results import is_wanted
 
-MAX_NAMES = 6
-"""Number of joints that a sentence names."""
 AUTOMATIC, NOBODY = "By name and position", "None"
 
 
@@ -31,29 +30,28 @@ def about(state: Any) -> str:
     if isinstance(image, str):
         return f"{image[:1].upper()}{image[1:]}."
     text = "Part of each vertex's weight that its mirror image gives to other joints."
-    alone = np.flatnonzero((image.mirror.joint < 0) & state.rig.skeleton.deform)
-    names = [ui.joint_title(state.rig, joint) for joint in alone[:MAX_NAMES]]
-    names += [f"and {len(alone) - MAX_NAMES} more"] if len(alone) > MAX_NAMES else []
-    return f"{text} Joints without a partner: {', '.join(names)}." if names else text
+    names = np.array(short_names(state.rig.skeleton.names))
+    alone = names[(image.mirror.joint < 0) & state.rig.skeleton.deform].tolist()
+    return f"{text} Joints without a partner: {listed(alone)}." if alone else text
 
 
-def _pairs(state: Any) -> list[tuple[int, int]]:
-    """Return the joints of each pair, -1 where one that may carry weight has no partner."""
+def _pairs(state: Any) -> list[tuple[int, int, str]]:
+    """Return the joints of each pair, and what pairs them; -1 for the partner of one alone."""
     mirror: Mirror | None = mirror_of(state)
     if mirror is None:
         return []
-    joints = enumerate(mirror.joint.tolist())
-    deform = state.rig.skeleton.deform
-    return [(one, other) for one, other in joints if other > one or (other < 0 and deform[one])]
+    joints, deform = (
+        enumerate(zip(mirror.joint.tolist(), mirror.how, strict=True)),
+        state.rig.skeleton.deform,
+    )
+    return [(one, *pair) for one, pair in joints if pair[0] > one or (pair[0] < 0 and deform[one])]
 
 
 def _rows(state: Any) -> dict[str, Any]:
-    """Return a row for each pair, with what it follows from, and the row of the chosen joint."""
-    pairs, mirror = _pairs(state), mirror_of(state)
-    names = [*short_names(state.rig.skeleton.names), "none"] if pairs else []
-    how = mirror.how if mirror else ()
-    rows = [(f"{names[one]} \u2013 {names[other]}", how[one], 0.0) for one, other in pairs]
-    chosen = next((row for row, pair in enumerate(pairs) if state.joint in pair), -1)
+    """Return a row for each pair, and that of the chosen joint."""
+    pairs, names = _pairs(state), [*short_names(_names(state)), "none"]
+    rows = [(f"{names[one]} \u2013 {names[other]}", how, 0.0) for one, other, how in pairs]
+    chosen = next((row for row, pair in enumerate(pairs) if state.joint in pair[:2]), -1)
     return {"rows": rows, "chosen": chosen}
 
 
@@ -61,39 +59,35 @@ def _choose(session: Session, row: int) -> None:
     session.state.joint = _pairs(Reader(session))[row][0]
 
 
-def _partners(state: Any) -> list[str]:
-    names = () if state.rig is None else state.rig.skeleton.names
-    return [AUTOMATIC, NOBODY, *short_names(names)]
+def _names(state: Any) -> tuple[str, ...]:
+    return state.rig.skeleton.names if ui.has_joint(state) else ()
 
 
 def _partner(state: Any) -> int:
     """Return the place in the menu of what is set for the chosen joint."""
-    if not ui.has_joint(state):
-        return 0
-    names = state.rig.skeleton.names
-    partner = next((other if one == names[state.joint] else one
-                    for one, other in state.rig.partners.items()
-                    if names[state.joint] in (one, other)), None)  # fmt: skip
-    return 0 if partner is None else names.index(partner) + 2 if partner else 1
+    names = _names(state)
+    partner = state.rig.partners.get(names[state.joint]) if names else None
+    return [None, "", *names].index(partner)
 
 
 def set_partner(session: Session, place: int) -> None:
     """Set the partner of the chosen joint; both lose others that were set."""
-    state = session.state
-    names = state.rig.skeleton.names
-    name, partner = names[state.joint], (None, "", *names)[place]
+    state, edits = session.state, session.state.edits
+    name, partner = state.rig.skeleton.names[state.joint], (None, "", *_names(state))[place]
+    pair = {name: partner, **({partner: name} if partner else {})}
     try:
-        for joint in (state.joint, place - 2)[: 1 + (place > 1)]:
-            check_alone(state.rig.skeleton, joint)
+        for one in pair:
+            check_alone(state.rig.skeleton, state.rig.skeleton.names.index(one))
     except CutcellError as error:
         session.refuse(error)
         return
     joints = {
-        one: replace(edit, partner=None) if {one, edit.partner} & {name, partner or name} else edit
-        for one, edit in state.edits.joints.items()
+        one: replace(edit, partner=None) if edit.partner in pair else edit
+        for one, edit in edits.joints.items()
     }
-    joints[name] = replace(joints.get(name, JointEdit()), partner=partner)
-    correct(session, replace(state.edits, joints=joints))
+    for one, other in pair.items():
+        joints[one] = replace(joints.get(one, JointEdit()), partner=other)
+    correct(session, replace(edits, joints=joints))
 
 
 def _label(state: Any) -> str:
@@ -114,8 +108,8 @@ PAIRS = ui.folded(
         margin=ui.GAP, max_height=200, scroll="y",
     ),
     ui.pick(
-        _label,
-        _partners, _partner, set_partner, searchable=True, margin=(16, 0, 4, 0),
+        _label, lambda state: [AUTOMATIC, NOBODY, *short_names(_names(state))], _partner,
+        set_partner, searchable=True, margin=(16, 0, 4, 0),
     ),
     visible=_is_mirrored,
 )  # fmt: skip
