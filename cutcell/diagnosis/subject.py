@@ -19,10 +19,9 @@ from ..graph.winding.boundary import Boundary, boundary_of
 from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import Body
-from ..runtime.display import shown_name
+from ..runtime.display import share, shown_name
 from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
-from .finding import share
 
 OUTSIDE = 0.05
 """Part of the longest side: joints farther from the body have no distances through it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +98,8 @@ class Rig(Summarized):
         is the file's. See `edited_rig`.
     original : Skeleton, optional
         The skeleton before edits added, removed, renamed or reparented joints.
+    partners : mapping of str to str
+        Joints on the other side that a person set, by joint, "" for none; see `JointEdit`.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -123,6 +126,7 @@ class Rig(Summarized):
     weight_sums: NDArray[np.float64] | None = None
     origin: NDArray[np.int32] | None = None
     original: Skeleton | None = None
+    partners: Mapping[str, str] = field(default_factory=dict)
     source: Any = field(default=None, repr=False)
 
     if TYPE_CHECKING:
@@ -143,6 +147,7 @@ class Rig(Summarized):
             weight_sums: NDArray[np.float64] | None = None,
             origin: ArrayLike | None = None,
             original: Skeleton | None = None,
+            partners: Mapping[str, str] = ...,
             source: Any = None,
         ) -> None: ...
 

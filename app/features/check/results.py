@@ -26,6 +26,8 @@ def watch(session: Session) -> None:
     follow = session.state.param.watch
     follow(lambda *events: _begin_anew(session), "rig")
     follow(lambda *events: _arrived(session, ""), "diagnosis")
+    follow(lambda *events: session.state.param.update(tried=None),
+           ["rig", "edits", "finding", "panel"])  # fmt: skip
     follow(lambda *events: _arrived(session, EXPORT), "export_diagnosis")
 
 

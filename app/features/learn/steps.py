@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.editing import edited_rig
 from cutcell_viewers.camera import Camera
 
 from ...document.address import defaults, from_query
@@ -16,7 +17,7 @@ from ...document.session import Session
 from ..brush.choices import BRUSH, selected
 from ..compare.choices import SINGLE, standard
 from ..compare.scene import shown_title, weights_of
-from ..correct.choices import applied, changed_only, changes
+from ..correct.choices import changed_only, changes
 from ..select.choices import SELECT
 from .lesson import Step
 from .sliders import slide, sliders_of
@@ -161,7 +162,7 @@ def _show_open(session: Session, choices: dict[str, Any], arrival: dict[str, Any
         "panel": state.panel, **dict.fromkeys(("moving", "playing", "animating"), False),
         **choices,
     }  # fmt: skip
-    rig = applied(state.own, scene["edits"])
+    rig = edited_rig(state.own, scene["edits"])
     scene |= changes(state, rig, scene["edits"])
     scene |= {**of_character(state, arrival), **motion(session, scene["panel"], arrival)}
     with restoring(session):

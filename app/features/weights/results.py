@@ -167,8 +167,12 @@ def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:
     """Return the weights (n, j) below the layer at a place, by the newest results."""
+    return weights_with(state, replace(state.edits, layers=state.edits.layers[:place]))
+
+
+def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
+    """Return the weights (n, j) that other layers give, by the newest results."""
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
-    edits = replace(state.edits, layers=state.edits.layers[:place])
     base = _base(state.bound, state.influences, few)
     return layered(state.rig, base, edits, state.recomputed).weights
 
