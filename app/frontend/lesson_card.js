@@ -137,9 +137,10 @@ export function lessonCard(steps, host, can = ["picture"]) {
   const revealed = (step) => {
     texts = step.text.split("\n\n").filter(Boolean).map((one) =>
       sentence(one, now.values, (name, value) => host.set(name, value)))
-    const parts = [said, plot.node, ...texts.map(({node}) => node)]
+    const offers = offersOf(step)  // which change the plot, where there is one
+    const parts = [said, plot.node, ...step.plot ? offers : [], ...texts.map(({node}) => node)]
     if (step.picture) { parts.push(element("p", {className: "unseen"}, step.picture)) }
-    parts.push(...offersOf(step))
+    if (!step.plot) { parts.push(...offers) }
     if (step.sentence) { parts.push(element("p", {className: "sentence"}, step.sentence)) }
     return parts
   }

@@ -134,7 +134,7 @@ class Step:
 
     def to_json(self) -> dict[str, Any]:
         """Return the step as the card needs it."""
-        names = ("title", "question", "text", "sentence", "picture", "notes")
+        names = ("title", "question", "text", "sentence", "picture", "notes", "plot")
         answer = {name: value for name, value in vars(self.answer).items() if value not in ("", [])}
         return {
             **{name: getattr(self, name) for name in names},
