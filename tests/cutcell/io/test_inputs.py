@@ -84,6 +84,9 @@ def test_the_skeleton_may_be_bytes_too(contents):
     [
         ("https://example.org/a.glb", "https://example.org/a.glb is an address, not a file"),
         (Path("s3://example/a.glb"), "s3://example/a.glb is an address, not a file"),
+        ("a" * 300 + ".glb", "cannot be read"),
+        ("a\0.glb", "cannot be read"),
+        ("/dev/fd/987", "/dev/fd/987: "),
         (io.StringIO("v 0 0 0"), "is open as text"),
         (b"", "bytes: the file is empty"),
         (b"a letter", '"" cannot be read'),
