@@ -11,6 +11,7 @@ bytes of a vertex that was not damaged. `--write` puts the table into docs/page/
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -47,7 +48,7 @@ def _attach_by_finding(hands: Hands, joint: str) -> None:
     """Attach the part that Check finds far from its joint to the nearest joint."""
     hands.panel("Check")
     hands.press("Parts that follow a far joint")
-    hands.press(f"Rigid to {joint}")
+    hands.press(re.compile(f"^Part \\d+: rigid to {joint}"))
 
 
 def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None = None) -> None:
@@ -85,9 +86,7 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     "noise": lambda hands: _change_selection(
         hands, "FrontLowerLeg.L", "Vertices of the bone", "Take the right side"
     ),
-    "wrong eye": lambda hands: _bind_part(
-        hands, ["eyes", "LeftArm"], "Rigid, to one joint", "Head"
-    ),
+    "wrong eye": lambda hands: _attach_by_finding(hands, "Head"),
     "cape": lambda hands: _bind_part(hands, ["Knight_Cape"], "Rigid, to one joint", "chest"),
     "blade": lambda hands: _bind_part(
         hands, ["Knife", "upperleg.r"], "With the body it touches"
@@ -97,6 +96,9 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     ),
     "finger": lambda hands: _change_selection(
         hands, "hand.l", "Bone and its children", "Take the right side"
+    ),
+    "twist": lambda hands: _change_selection(
+        hands, "thigh_twist.l", "Vertices of the bone", "Take the right side"
     ),
 }  # fmt: skip
 """What a person does for each kind of damage."""

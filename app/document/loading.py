@@ -18,7 +18,7 @@ from cutcell_viewers.camera import Camera, framing
 from ..derive.jobs import READING
 from ..features.character import bounds_of, camera_part, first_joint
 from ..features.compare.results import carry
-from ..features.correct.choices import applied, changes, same_structure
+from ..features.correct.choices import changes, same_structure
 from ..features.correct.commands import edited_state
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
@@ -158,7 +158,7 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
     state, plain = session.state, history.plain(choices)
     edits: Edits = choices.get("edits") or state.edits
     own = choices.get("own") or state.own
-    rig = choices.get("rig") or applied(own, edits)
+    rig = choices.get("rig") or edited_rig(own, edits)
     changed: dict[str, Any] = {"rig": rig}
     if not same_structure(rig, state.rig):
         changed = changes(state, rig, edits)

@@ -86,10 +86,10 @@ def publish(session: Session) -> None:
         session.view.send(**message)
 
 
-def query(session: Session) -> str:
-    """Return what the address says now."""
+def query(session: Session, always_camera: bool = False) -> str:
+    """Return what the address says now; the camera is left out where it is the first one."""
     view, camera = session.view, None
-    if view.camera is not None and not view.at_home:
+    if view.camera is not None and (always_camera or not view.at_home):
         camera = [*view.camera.position, *view.camera.focal_point]
     try:
         edits = session.edits_file.text_of(session.state.edits, session.state.opening)

@@ -20,7 +20,7 @@ from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.palette import THEMES
 
 from ..features.character import theme_part
-from ..features.compare.scene import title_of, weights_of
+from ..features.compare.scene import shown_title, weights_of
 from ..features.learn.lesson import Lesson, Step, built_in
 from ..features.learn.plots import plot_of
 from ..features.learn.steps import (
@@ -199,7 +199,7 @@ class Recording:
         if step.answer.kind == "paint":
             part["right"] = self._moved(step)
             methods = state.methods if state.panel == "compare" else ()
-            tables = {title_of(name): weights_of(state, name) for name in methods}
+            tables = {shown_title(state, name): weights_of(state, name) for name in methods}
             part["methods"] = {
                 title: self._moved(step, table)
                 for title, table in tables.items()

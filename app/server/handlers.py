@@ -177,10 +177,8 @@ class PageHandler(RequestHandler):
         """Answer with the page."""
         agent = self.request.headers.get("User-Agent", "")
         arguments = {name: values[:1] for name, values in self.request.arguments.items()}
-        signed = {
-            "secret_key": self.application.secret_key,
-            "signed": self.application.sign_sessions,
-        }
+        server: Any = self.application
+        signed = {"secret_key": server.secret_key, "signed": server.sign_sessions}
         token = generate_jwt_token(
             generate_session_id(**signed),
             **signed,
@@ -250,7 +248,7 @@ class SocketHandler(WSHandler):
 
     def _has_token(self) -> bool:
         """Return whether the request has a token that this server made a few minutes ago."""
-        server = self.application
+        server: Any = self.application
         try:
             kind, token = self.request.headers["Sec-WebSocket-Protocol"].split(",")
             token = token.strip()

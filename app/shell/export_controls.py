@@ -121,8 +121,8 @@ FILMS = {
     "Turntable (GIF)": _offering(actions.export_turntable, "gif"),
     "Motion (MP4)": _offering(actions.export_motion, "mp4"),
     "Motion (GIF)": _offering(actions.export_motion, "gif"),
-    "Sweep (MP4)": _offering(actions.export_sweep, "mp4"),
-    "Sweep (GIF)": _offering(actions.export_sweep, "gif"),
+    "Moving cut or wavefront (MP4)": _offering(actions.export_sweep, "mp4"),
+    "Moving cut or wavefront (GIF)": _offering(actions.export_sweep, "gif"),
 }
 NUMBERS = {
     "Weights (CSV)": _offering(actions.export_numbers, "weights", "csv"),

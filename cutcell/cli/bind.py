@@ -22,7 +22,6 @@ from .options import (
     Smoothing,
     Symmetric,
     TemplateName,
-    chosen_method,
     layered_method,
     with_method,
 )
@@ -106,7 +105,7 @@ def bind(
     from .summary import summarize_weights
 
     edits = None if layers is None else load_edits(layers)
-    how = chosen_method(options) if edits is None else layered_method(options, edits.method)
+    how, resolution = layered_method(options, edits)
     touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
     fits = None if template is None else check_template(template)
     check_output(out)
@@ -128,7 +127,7 @@ def bind(
     with progress_bars(quiet) as progress:
         binding = compute(
             loaded,
-            how.resolution if edits is not None and "resolution" in edits.method else None,
+            resolution,
             method=how,
             **touches,
             edits=edits,
@@ -136,6 +135,7 @@ def bind(
             progress=progress,
         )
     dropped: list[str] = []
+    how = binding.method
     is_open = options["max_influences"] is None and how.max_influences is None
     if is_open and out.suffix.lower() in GLTF:
         binding, dropped = _limited(loaded, binding, edits, touches)
@@ -157,7 +157,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": options["method"],
+        "method": options["method"] or "animation",
         "parameters": {**asdict(how), **touches},
         "layers": None if layers is None else str(layers),
         "template": template,

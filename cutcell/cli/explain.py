@@ -12,7 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import Json, LayersFile, RigFile, SkeletonFile, chosen_method, with_method
+from .options import Json, LayersFile, RigFile, SkeletonFile, layered_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -56,14 +56,14 @@ def explain(
     from ..editing.stored import load_edits, with_base
     from ..io import load
 
-    how = chosen_method(options)
     stored = None if layers is None else load_edits(layers)
+    how, resolution = layered_method(options, stored)
     loaded = load(rig, skeleton=skeleton)
     if stored is not None:
         loaded = with_base(loaded)
     with progress_bars(quiet=json) as progress:
         explanation = compute(
-            loaded, vertex, joint=joint, method=how, edits=stored, progress=progress
+            loaded, vertex, resolution, joint=joint, method=how, edits=stored, progress=progress
         )
     if json:
         print_json({"input": str(rig), **explanation.to_dict(), "warnings": list(loaded.warnings)})

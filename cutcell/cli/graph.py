@@ -61,7 +61,7 @@ def graph(
         context = run(steps, Context(how, progress=progress))
     document = {
         "input": str(rig),
-        "method": options["method"],
+        "method": options["method"] or "animation",
         "parameters": {name: value for name, value in asdict(how).items() if name in GRAPH_OPTIONS},
         **described(loaded, context.graph, context.distances, context.seconds),
         "warnings": list(loaded.warnings),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
 from functools import wraps
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +17,7 @@ from ..runtime.standard_output import output_errors
 from .console import for_people
 
 if TYPE_CHECKING:
+    from ..editing import Edits
     from ..method import Method
 
 METHOD = "The method"
@@ -47,27 +48,25 @@ def _stdin(context: typer.Context, path: Path | None) -> Path | None:
 
 
 def _stdout(context: typer.Context, path: Path | None) -> Path | None:
-    """Return a GLB in the place of "-" that is written to standard output in the end."""
-    return context.with_resource(_written_to_stdout()) if path == Path("-") else path
-
-
-@contextmanager
-def _written_to_stdout() -> Iterator[Path]:
-    output = sys.stdout
-    with TemporaryDirectory() as folder, redirect_stdout(sys.stderr):
-        yield (path := Path(folder, "stdout.glb"))
-        with output_errors():
-            output.buffer.write(path.read_bytes() if path.exists() else b"")
+    """Return a GLB in the place of "-" that goes to standard output when all else is done."""
+    if path != Path("-"):
+        return path
+    out = Path(context.with_resource(TemporaryDirectory()), "stdout.glb")
+    output = sys.stdout.buffer
+    context.with_resource(redirect_stdout(sys.stderr))
+    context.call_on_close(
+        output_errors()(lambda: output.write(out.read_bytes() if out.exists() else b""))
+    )
+    return out
 
 
 OutFile = Annotated[
     Path,
     typer.Argument(
-        metavar="OUT",
-        help="Output file: a copy of RIG with the new weights, - for a GLB on standard output.",
-        callback=_stdout,
+        metavar="OUT", callback=_stdout,
+        help="Output file: a copy of RIG with the new weights. - is a GLB on standard output.",
     ),
-]
+]  # fmt: skip
 FixFile = Annotated[
     Path | None,
     typer.Option(
@@ -157,31 +156,36 @@ Lock = Annotated[
     ),
 ]  # fmt: skip
 
+_METHOD = (
+    "--method", "M",
+    "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
+)  # fmt: skip
+_RESOLUTION = (
+    "--resolution -r", "R",
+    "Rays along the longest side of the mesh. More rays separate close parts better, but take"
+    " more time and memory.",
+)  # fmt: skip
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
-    "method": (
-        str, "animation", "--method", "M",
-        "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
-    ),
-    "resolution": (
-        int, 64, "--resolution -r", "R",
-        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
-        " more time and memory.",
-    ),
+    "method": (str | None, None, *_METHOD[:-1], f"{_METHOD[-1]} Default: animation."),
+    "resolution": (int | None, None, *_RESOLUTION[:-1], f"{_RESOLUTION[-1]} Default: 64."),
     "connectivity": (
         str | None, None, "--connectivity", "C",
         "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
         " any: at any angle, so that distances are geodesic. Default: any; 6 with --method paper.",
     ),
     "winding_threshold": (
-        float, 0.5, "--winding-threshold", "T",
+        float | None, None, "--winding-threshold", "T",
         "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
-        " open mesh.",
+        " open mesh. Default: 0.5.",
     ),
     "orient": (
-        bool, True, "--orient/--no-orient", "",
-        "Treat inverted faces as flipped, or use all faces as they are in the file.",
+        bool | None, None, "--orient/--no-orient", "",
+        "Treat inverted faces as flipped, which is the default, or use all faces as they are in the"
+        " file.",
     ),
-    "samples": (int, 5, "--samples", "N", "Number of sources along each bone."),
+    "samples": (
+        int | None, None, "--samples", "N", "Number of sources along each bone. Default: 5.",
+    ),
     "leaf": (
         str | None, None, "--leaf", "L",
         "End of each bone. point, extend: at the child joints; a joint without children is a point,"
@@ -204,11 +208,13 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         " all with --method paper, but 4 in glTF files.",
     ),
     "threshold": (
-        float, 0.0, "--threshold", "W",
-        "Weights below this are dropped, and the rest is scaled to sum to 1.",
+        float | None, None, "--threshold", "W",
+        "Weights below this are dropped, and the rest is scaled to sum to 1. Default: 0.",
     ),
 }  # fmt: skip
-"""Type, default, flags, placeholder and help of each option of `Method`, by its field."""
+"""Type, default, flags, placeholder and help of each option of `Method`, by its field.
+
+The default is None, so that one that is given counts, also where it equals the method's."""
 
 
 def _annotated(
@@ -222,8 +228,8 @@ if TYPE_CHECKING:
     Resolution = int
     MethodChoice = str
 else:
-    Resolution = _annotated(*METHOD_OPTIONS["resolution"])
-    MethodChoice = _annotated(*METHOD_OPTIONS["method"])
+    Resolution = _annotated(int, 64, *_RESOLUTION)
+    MethodChoice = _annotated(str, "paper", *_METHOD)
 
 
 def with_options(
@@ -267,13 +273,15 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
             values[key] = int(text)
     if values.get("max_influences") == "all":
         values["max_influences"] = None
-    return method_of(check_choice("method", values.pop("method"), METHODS), **values)
+    return method_of(check_choice("method", values.pop("method", "animation"), METHODS), **values)
 
 
-def layered_method(options: Mapping[str, Any], stored: Mapping[str, Any]) -> Method:
-    """Return the method that is stored with layers, with other options of the command line."""
-    chosen = {name: value for name, value in options.items() if value != METHOD_OPTIONS[name][1]}
-    if "method" in chosen:
-        stored = {}
-    stored = {name: "all" if value is None else value for name, value in stored.items()}
-    return chosen_method({**options, **stored, **chosen})
+def layered_method(options: Mapping[str, Any], edits: Edits | None) -> tuple[Method, int | None]:
+    """Return the method that is stored with edits, with other options of the command line.
+
+    Also returns the resolution if either has one.
+    """
+    chosen = {name: value for name, value in options.items() if value is not None}
+    stored = {} if edits is None or "method" in chosen else edits.method
+    stored = {name: "all" if value is None else value for name, value in stored.items()} | chosen
+    return chosen_method(stored), stored.get("resolution")

@@ -16,7 +16,7 @@ SEVERITIES = ("error", "warning", "note")
 """The most severe first. Error: it breaks a binding or another program. Warning: most likely a
 fault. Note: information."""
 
-REMOVE = "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again."
+REMOVE = "Remove this weight, from these vertices or the whole rig, or bind again."
 CLEANED = "remove weight that is implausible through the body from these vertices"
 MAX_LINES = 40
 """Maximum number of details of a finding."""
@@ -61,11 +61,17 @@ KINDS = {
         "Flip them. Binding already treats them as flipped.",
         "flip them, and the normals that point inward",
     ),
+    "hollow-body": Kind(
+        "Hollow body", "warning",
+        "{faces:face/form} a second wall inside of the body, {part} of the surface: programs that "
+        "bind through the body find it empty.",
+        "Delete the inner surface. Binding already fills the body, but for the paper's method.",
+    ),
     "cracks": Kind(
         "Cracks", "note",
-        "{edges:edge/lie} along open rims less than {width:.2g} from others that fit: seams that "
-        "were not welded.",
-        "Merge vertices by a distance of {width:.2g}.",
+        "{edges:edge/lie} along open rims less than {width:.2g} (file units) from others that fit: "
+        "seams that were not welded.",
+        "Merge vertices by a distance of {width:.2g} (file units).",
     ),
     "holes": Kind(
         "Missing faces", "warning",
@@ -190,7 +196,8 @@ KINDS = {
     "far-parts": Kind(
         "Parts that follow a far joint", "warning",
         "{parts:part/follow} a joint that is far away, though another is near.",
-        "Make each rigid to the nearest joint, unless it is meant to follow the other.",
+        "Let each follow what it touches, an empty joint in it or the nearest one, unless it is "
+        "meant to follow the other.",
     ),
     "stretched-surface": Kind(
         "Surface that stretches", "warning",
@@ -286,6 +293,8 @@ class Finding:
         A pose that shows it, where the rest pose does not.
     parts : tuple of (int, int)
         A vertex of each connected component at fault, and the joint to make it rigid to.
+    empty : tuple of int
+        For each of these a joint without weight that lies in the component, -1 for none.
     """
 
     code: str
@@ -299,6 +308,7 @@ class Finding:
     repair: str = ""
     pose: Pose | None = None
     parts: tuple[tuple[int, int], ...] = ()
+    empty: tuple[int, ...] = ()
 
     @property
     def title(self) -> str:
@@ -319,6 +329,7 @@ class Finding:
             "joints": self.joints.tolist(),
             "repair": self.repair or None,
             "parts": [list(part) for part in self.parts],
+            "empty": list(self.empty),
             "pose": None if self.pose is None else asdict(self.pose),
         }
 
@@ -346,10 +357,10 @@ def found(
     kind, more = KINDS[code], len(details) - MAX_LINES
     lines = (*details[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))
     message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
-    parts = values.get("parts", ())
+    parts, empty = values.get("parts", ()), values.get("empty", ())
     yield Finding(
         code, severity or kind.severity, message, advice, **at, details=lines, repair=repair,
-        pose=pose, parts=parts,
+        pose=pose, parts=parts, empty=empty,
     )  # fmt: skip
 
 
@@ -359,11 +370,3 @@ def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     return tuple(
         sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
     )
-
-
-def share(part: float, whole: float) -> str:
-    """Return a part of a whole in per cent: "12%", "0.3%", "under 0.1%"."""
-    ratio = part / whole if whole > 0 else 0.0
-    if 0 < ratio < 0.001:
-        return "under 0.1%"
-    return f"{ratio:.0%}" if ratio >= 0.1 else f"{ratio:.1%}"

@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics.fallback import REACHED
-from ..runtime.display import count
-from .finding import Finding, Pose, found, share
+from ..runtime.display import count, share
+from .finding import Finding, Pose, found
 from .subject import Subject
 from .weights import NOTICED, through_body
 
@@ -79,7 +79,7 @@ def _stray_advice(weights: NDArray[np.float64]) -> str:
     if moves.any():
         advice.append("Lock joints that lead a part, such as eyes, to their weights in the file.")
     if not moves.all():
-        advice.append("Exclude controls: --no-deform, or the joint's box on the page.")
+        advice.append("Let controls carry no weight.")
     return " ".join(advice)
 
 

@@ -13,10 +13,11 @@ from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
-from ..runtime.display import count
+from ..rig.deform_joints.conventions import kinds_by_name
+from ..runtime.display import count, share
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
 from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
-from .finding import Finding, found, share
+from .finding import Finding, found
 from .subject import Subject, bones_distance
 
 FAR = 1.5
@@ -35,6 +36,8 @@ MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
+ROOM = 0.05
+"""Around the box of a part, as part of its longest side, where a joint still lies in it."""
 FarPart = tuple[NDArray[np.intp], int, int]
 """Its vertices, the joint that it follows and the nearest one."""
 SHARED = 0.1
@@ -213,6 +216,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
             for part, j, nearest in far
         ],
         parts=tuple((int(part.min()), nearest) for part, _, nearest in far),
+        empty=tuple(_empty_joint(subject, part) for part, _, _ in far),
     )
 
 
@@ -233,6 +237,22 @@ def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
             nearest, least = int(j), float(np.median(away))
     is_far = followed.min() > MIN_AWAY and np.median(followed) - least > BEYOND
     return nearest if is_far else -1
+
+
+def _empty_joint(subject: Subject, part: NDArray[np.intp]) -> int:
+    """Return the joint without weight that lies in the box of a part, nearest to it; -1 for none.
+
+    Props have such joints. Controls, roots and ends are none by their names.
+    """
+    skeleton, points = subject.rig.skeleton, subject.rig.mesh.vertices[part]
+    low, high = points.min(axis=0), points.max(axis=0)
+    room = ROOM * (high - low).max()
+    inside = ((skeleton.joints >= low - room) & (skeleton.joints <= high + room)).all(axis=1)
+    kinds = np.array([kind for kind, _ in kinds_by_name(skeleton.names)])
+    is_control = np.isin(kinds, ["controls", "roots", "ends"])
+    empty = np.flatnonzero(inside & ~is_control & ~subject.weights.any(axis=0))
+    away = cKDTree(points).query(skeleton.joints[empty])[0]
+    return int(empty[away.argmin()]) if len(empty) else -1
 
 
 def _moves_with_the_body(

@@ -13,7 +13,8 @@ from ..geometry.triangles import normals
 from ..pose import axis_rotation
 from ..pose.stretch import DEGREES as STRETCH_DEGREES
 from ..pose.stretch import MAX_SHARE, followed, measure_stretch, turned_edges
-from .finding import Finding, Pose, found, share
+from ..runtime.display import share
+from .finding import Finding, Pose, found
 from .subject import Subject
 
 DEGREES = 45.0

@@ -15,7 +15,7 @@ from ..graph import CutCellGraph
 from ..method import ANIMATION
 from ..pose.stretch import DEGREES, MAX_SHARE, Stretch
 from ..rig import Rig
-from ..runtime.display import count, listed, shown_name
+from ..runtime.display import count, listed, share, shown_name
 from .edits import Edits
 from .layers import RigSources, vertices_of
 from .layers.contents import Attached, Filled, Locked
@@ -95,10 +95,10 @@ def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
     if stretch.share > MAX_SHARE and stretch.joint is not None:
         place = ", ".join(f"{value:.3g}" for value in stretch.position or ())
         yield LocatedWarning(
-            f"{stretch.share:.0%} of the surface stretches or shrinks to more than twice when "
-            f"joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst at "
-            f"vertex {stretch.vertex} ({place}). Check which joints deform near there, or bind "
-            "that part separately",
+            f"{share(stretch.share, 1)} of the surface stretches or shrinks to more than twice "
+            f"when joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst "
+            f"at vertex {stretch.vertex} (at {place} in file units). Check which joints deform "
+            "near there, or bind that part separately",
             "stretched-surface",
         )
 

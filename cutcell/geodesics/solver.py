@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +46,10 @@ class BoneDistanceSolver:
         self.graph = graph
         self.tree = NodeTree.of(graph)
         self.targets = np.arange(graph.first_point, dtype=np.int32)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the graph alone: all else is computed from it, some by another thread."""
+        return BoneDistanceSolver, (self.graph,)
 
     @cached_property
     def contraction(self) -> Contraction | None:

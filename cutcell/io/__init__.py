@@ -32,6 +32,8 @@ READABLE = (
     "GLB, glTF, VRM, FBX, USD, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, "
     "OFF"
 )
+EXPORTED = {kind: ("Maya", "FBX") for kind in (".ma", ".mb")} | {".max": ("3ds Max", "FBX")}
+"""Programs of formats that only they can read, and what they export."""
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
 SAVED = (*GLTF, ".txt", ".npz")
 """The endings that `save` takes."""
@@ -99,7 +101,9 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
         return read_gltf(path, accessories, bare)
     if kind == ".json":
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
-    raise FileError(f'"{kind}" cannot be read; give {READABLE} (from Blender: export as GLB)')
+    program, exported = EXPORTED.get(kind, ("Blender", "GLB"))
+    hint = f"(from {program}: export as {exported})"
+    raise FileError(f'"{kind}" cannot be read; give {READABLE} {hint}')
 
 
 def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:

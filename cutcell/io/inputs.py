@@ -11,7 +11,6 @@ from tempfile import TemporaryDirectory
 from typing import BinaryIO
 
 from ..errors import FileError
-from ..runtime.writing import reason
 from .files import read_bytes
 
 Input = str | os.PathLike[str] | bytes | bytearray | memoryview | BinaryIO
@@ -50,11 +49,7 @@ def as_file(source: Input) -> Iterator[Path]:
     elif isinstance(source, bytes | bytearray | memoryview):
         data = bytes(source)
     else:
-        name = getattr(source, "name", name)
-        try:
-            data = source.read()
-        except OSError as error:
-            raise FileError(f"{name}: cannot be read ({reason(error)})") from None
+        name, data = getattr(source, "name", name), source.read()
         if not isinstance(data, bytes):
             raise FileError(f'{name}: is open as text; open it as bytes: open(path, "rb")')
     start = data.removeprefix(b"\xef\xbb\xbf")

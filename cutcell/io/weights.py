@@ -78,7 +78,7 @@ def sum_warnings(
     empty = is_used & (sums == 0)
     off = is_used & (sums > 0) & (np.abs(sums - 1) > ROUNDING)
     warnings: list[str] = []
-    nothing = "no weight, so that no joint moves them. `cutcell bind` gives them some"
+    nothing = "no weight, so that no joint moves them. Binding gives them some"
     scaled = "weights that do not sum to one. They are scaled so that they do"
     for rows, what, code in (
         (empty, nothing, "unweighted-vertices"),

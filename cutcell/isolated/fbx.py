@@ -1,6 +1,6 @@
 """FBX, binary and text, 6.1 to 7.7: read by ufbx, handed on as the arrays of a scene.
 
-The process must end without cleaning up, see `fbx_names.kept`.
+The process must end without cleaning up, since ufbx' bindings let go of elements too often.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import numpy as np
 import ufbx
 
 from ..geometry.polygons import cut_polygons
-from .fbx_names import decoded, kept, label, read_names
+from .fbx_names import kept, label, read_names
 from .scene import Scene, upper_left
 
 FRAMES_A_SECOND = 30.0
@@ -36,7 +36,6 @@ def read(data):
         is_bone = node.attrib_type == ufbx.ElementType.BONE
         local = transform(node.local_transform)
         scene.add_node(label(node), parent, local, not node.visible, is_bone)
-    blended: list[str] = []
     for mesh in kept(file.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
@@ -50,8 +49,6 @@ def read(data):
                 f'the skinned mesh "{name}" is read once, as "{name}"; its other instances '
                 f"({others}) are left out. Duplicate the mesh data of those to read them"
             )
-        if len(kept(mesh.blend_deformers)):
-            blended.append(name)
         skin = influences(skins, place) if skins else {}
         # A skin holds for one place of a mesh; other meshes may stand anywhere.
         for node in places[:1] if skins else places:
@@ -59,8 +56,7 @@ def read(data):
             arrays = shape | colours | {"place": matrix(node.geometry_to_node)} | skin
             scene.add_mesh(label(node) or label(mesh), place[node.element_id], arrays)
     add_clips(scene, file, place)
-    notices = {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
-    return scene.arrays() | notices
+    return scene.arrays() | {"notes": np.array(notes, np.str_)}
 
 
 def options():
@@ -175,8 +171,8 @@ def describe(scene, material):
     kept([material])
     texture, image = base_texture(material), -1
     if texture is not None:
-        names = texture.raw_relative_filename, texture.raw_filename, texture.raw_absolute_filename
-        image = scene.add_image(tuple(decoded(name)[:LONGEST] for name in names), texture.content)
+        names = (texture.relative_filename, texture.filename, texture.absolute_filename)
+        image = scene.add_image(tuple(name[:LONGEST] for name in names), texture.content)
     color, cut = base_color(material), is_cut(material)
     return label(material), color, opacity(material), image, cut, texture
 

@@ -1,7 +1,4 @@
-"""Elements of an FBX and their names, which old programs did not write in UTF-8.
-
-ufbx' bindings let go of list elements too often: each list is walked once and kept.
-"""
+"""Elements of an FBX and their names, which old programs did not write in UTF-8."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ import re
 
 import ufbx
 
-ENCODINGS = {
+USUAL = {
     "cp932": (rb"[\x82\x83].|[\x88-\x97].", 3100),
     "gbk": (rb"[\xb0-\xd7][\xa1-\xfe]", 3755),
     "cp949": (rb"[\xb0-\xc8][\xa1-\xfe]", 2350),
@@ -19,15 +16,14 @@ ENCODINGS = {
     "cp1252": (rb"(?<=[A-Za-z])[\xc0-\xff]|[\xc0-\xff](?=[A-Za-z])", 64),
 }
 """Bytes of usual characters by encoding, and how many of these there are."""
-UNUSUAL = 1e6
+CLASS = re.compile(rb"\x00\x01.*|^(Model|Geometry|Material|AnimStack)::", re.DOTALL)
 KEEP: list[list] = []
-"""Elements of ufbx that must never be released: its bindings let go of them too often."""
 NAMES: dict[int, str] = {}
 """Names that are not UTF-8, by the numbers of their elements."""
 
 
 def kept(elements):
-    """Return a list's elements; they stay as long as the process."""
+    """Return a list's elements; ufbx' bindings let go of them too often, so they stay for good."""
     KEEP.append(list(elements))
     return KEEP[-1]
 
@@ -38,12 +34,17 @@ def label(element):
 
 
 def read_names(elements):
-    """Read the names that are not UTF-8; return what to say of them."""
+    """Read the names that are not UTF-8, with `retain_dom`; return what to say of them."""
     NAMES.clear()
-    raw = {one.element_id: _stored(one) for one in elements if "\ufffd" in one.name}
+    raw = {}
+    for one in elements:
+        if "\ufffd" in one.name:  # for what ufbx writes such bytes
+            values = kept(kept([one.dom_node])[0].values)
+            name = next(v.value_blob for v in values if v.type == ufbx.DomValueType.STRING)
+            raw[one.element_id] = CLASS.sub(b"", name)
     if not raw:
         return []
-    encoding = guessed(raw.values())
+    encoding = guessed(b" ".join(raw.values()))
     NAMES.update((k, name.decode(encoding, "replace")) for k, name in raw.items())
     return [
         f"its names are not UTF-8. They are read as {encoding}, guessed from their letters; if "
@@ -51,34 +52,13 @@ def read_names(elements):
     ]
 
 
-def _stored(element):
-    """Return the name of an element as the file, read with `retain_dom`, has it."""
-    values = kept(kept([element.dom_node])[0].values)
-    stored = next(v.value_blob for v in values if v.type == ufbx.DomValueType.STRING)
-    name, mark, _ = stored.partition(b"\0\1")
-    return name if mark else stored.split(b"::", 1)[-1]
-
-
-def guessed(names):
-    """Return the encoding in which names, as bytes, are most likely."""
-    raw = b" ".join(names)
+def guessed(raw):
+    """Return the encoding in which bytes are most likely."""
 
     def surprise(encoding):
-        try:
-            text = raw.decode(encoding)
-        except UnicodeDecodeError:
-            return math.inf
-        usual, count = ENCODINGS[encoding]
-        matches = len(re.findall(usual, raw, re.DOTALL))
-        others = max(sum(not letter.isascii() for letter in text) - matches, 0)
-        return matches * math.log(count) + others * math.log(UNUSUAL)
+        usual, count = USUAL[encoding]
+        text, times = raw.decode(encoding, "replace"), len(re.findall(usual, raw, re.DOTALL))
+        others = max(sum(not letter.isascii() for letter in text) - times, 0)
+        return times * math.log(count) + 14 * others + 99 * text.count("\ufffd")
 
-    return min(ENCODINGS, key=surprise)
-
-
-def decoded(name):
-    """Return the text of a name that stands alone, in UTF-8 or an encoding that is guessed."""
-    try:
-        return name.decode()
-    except UnicodeDecodeError:
-        return name.decode(guessed([name]), "replace")
+    return min(USUAL, key=surprise)

@@ -155,7 +155,7 @@ def dropped(prim, primvars, sets):
     skin = UsdSkel.BindingAPI(prim)
     targets = skin.GetBlendShapeTargetsRel()
     parts = {
-        "blend shapes": bool(targets and targets.GetTargets()),
+        "morph targets": bool(targets and targets.GetTargets()),
         "dual-quaternion skinning": skin.GetSkinningMethodAttr().Get() == "dualQuaternion",
         "texture coordinates after the first set": len(sets) > 1,
         "tangents": bool(primvars.FindPrimvarWithInheritance("tangents")),

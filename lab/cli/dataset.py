@@ -169,11 +169,16 @@ def bind(
                 "bound": report.bound,
                 "known": report.known,
                 "failed": report.failures,
+                "damaged": report.damaged,
                 "stretched": report.stretched,
                 "seconds": round(report.seconds, 3),
             }
         )
     elif not quiet:
+        print_warnings(
+            f"{name}: its file in the store was damaged, and it was bound again"
+            for name in report.damaged
+        )
         print_failures(report.failures)
         print_stretched(report.stretched)
         print_table(str(out), bind_counts(report).items())

@@ -373,7 +373,7 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
         assert weight == round(state.weights[vertex, 1], 4)
         assert in_file == round(state.rig.weights[vertex, 1], 4)
     total, mean = table.content["totals"]
-    assert total[1] == round(state.weights[chosen, 1].sum(), 2)
+    assert total[1] == round(state.weights[chosen, 1].sum(), 4)
     assert mean[2] == round(state.rig.weights[chosen, 1].mean(), 4)
     table._handle_msg({"type": "sort", "sort": 1})
     loop.rest(bound)

@@ -11,7 +11,7 @@ import param
 
 from cutcell.binding import Binding
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.restructure import restructured, restructured_skeleton
+from cutcell.editing.restructure import restructured_skeleton
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 
@@ -82,33 +82,6 @@ class Dragged:
     binding: Binding
 
 
-def applied(own: Rig, edits: Edits) -> Rig:
-    """Return a rig with the joints of its edits, where these put them.
-
-    Parameters
-    ----------
-    own : Rig
-        As it is where nothing is edited.
-    edits : Edits
-
-    Raises
-    ------
-    SkeletonError
-        No joint that may carry weight would be left, or one stands too far from the mesh.
-    """
-    rig = restructured(own, edits)
-    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
-    for joint, name in enumerate(rig.skeleton.names):
-        one = edits.joints.get(name)
-        if one is not None and one.deform is not None:
-            deform[joint] = one.deform
-        if one is not None and one.position is not None:
-            joints[joint] = one.position
-    if not np.array_equal(deform, rig.skeleton.deform):
-        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
-    return rig.with_joints(joints)
-
-
 def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:
     """Return what of a state changes with edits and the rig that they make.
 
@@ -156,7 +129,10 @@ def renamed(edits: Edits, name: str, new: str) -> Edits:
     was = None if one.added else one.was or name
     one = replace(one, was=None if was == new else was)
     edited = {now(key): other for key, other in {**edits.joints, name: one}.items()}
-    joints = {key: replace(other, parent=now(other.parent)) for key, other in edited.items()}
+    joints = {
+        key: replace(other, parent=now(other.parent), partner=now(other.partner))
+        for key, other in edited.items()
+    }
     return replace(edits.renamed(now), joints=joints)
 
 

@@ -15,7 +15,6 @@ from cutcell_viewers.character import to_scene
 
 from ...document.session import Session
 from ...editing import cross_section_centre, joint_mirror
-from .choices import applied
 from .commands import check_alone, correct
 
 DIGITS = 6
@@ -64,7 +63,8 @@ def mirror_of(session: Session) -> Mirror | None:
             return None
 
     skeleton = state.own_skeleton
-    key = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
+    key = repr((skeleton.joints.tobytes(), skeleton.parents.tolist(), skeleton.names,
+                state.rig.skeleton.deform.tolist(), state.rig.partners))  # fmt: skip
     mirror: Mirror | None = session.memo("mirror", (state.rig.mesh, key), find)
     return mirror
 
@@ -182,7 +182,7 @@ class Hand:
         place = back[:3, :3] @ np.asarray(message["position"], float) + back[:3, 3]
         try:
             edits = moved(session, place)
-            rig = applied(state.own, edits)
+            rig = edited_rig(state.own, edits)
         except CutcellError as error:
             self.release()
             session.fail(error)

@@ -106,7 +106,11 @@ def without(rig: Rig, edits: Edits, name: str) -> tuple[Edits, str]:
 
     one = edits.joints.get(name, JointEdit())
     joints = {
-        key: replace(other, parent=now(other.parent))
+        key: replace(
+            other,
+            parent=now(other.parent),
+            partner=None if other.partner == name else other.partner,
+        )
         for key, other in edits.joints.items()
         if key != name
     }

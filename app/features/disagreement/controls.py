@@ -3,9 +3,8 @@
 from functools import partial
 from typing import Any
 
-from cutcell.diagnosis.finding import share
 from cutcell.rig import Rig
-from cutcell.runtime.display import count
+from cutcell.runtime.display import count, share
 from cutcell_lab.disagreement import REASONS, Region
 
 from ...document.state import State

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.editing import edited_rig
 from cutcell_viewers.camera import Camera
 
 from ...document.address import defaults, from_query
@@ -15,8 +16,8 @@ from ...document.recording import begin, restoring
 from ...document.session import Session
 from ..brush.choices import BRUSH, selected
 from ..compare.choices import SINGLE, standard
-from ..compare.scene import title_of, weights_of
-from ..correct.choices import applied, changed_only, changes
+from ..compare.scene import shown_title, weights_of
+from ..correct.choices import changed_only, changes
 from ..select.choices import SELECT
 from .lesson import Step
 from .sliders import slide, sliders_of
@@ -31,11 +32,11 @@ NO_PATH = "a point that no path reaches"
 
 def watch(session: Session) -> None:
     """Take clicks on the body and on bones for answers where a step asks for them."""
-    follow = session.state.param.watch
+    follow, unused = session.state.param.watch, {n: session.state.param[n].default for n in TOOLS}
     follow(lambda *events: _answer_by_click(session, "vertex"), "vertex")
     follow(lambda *events: _answer_by_click(session, "joint"), "joint")
     follow(lambda *events: _prepare(session), "binding")
-    follow(lambda *events: session.state.param.update(**_unused_tools(session.state)), "step")
+    follow(lambda *events: session.state.param.update(**unused), "step")
 
 
 def go(session: Session, index: int) -> None:
@@ -72,10 +73,6 @@ def leave(session: Session) -> None:
         if choices["character"] == session.character:
             set_camera(session, camera)
         state.param.update(**tools)  # a selection counts on its own mesh only
-
-
-def _unused_tools(state: Any) -> dict[str, Any]:
-    return {name: state.param[name].default for name in TOOLS}
 
 
 def answer(session: Session, value: Any) -> None:
@@ -165,7 +162,7 @@ def _show_open(session: Session, choices: dict[str, Any], arrival: dict[str, Any
         "panel": state.panel, **dict.fromkeys(("moving", "playing", "animating"), False),
         **choices,
     }  # fmt: skip
-    rig = applied(state.own, scene["edits"])
+    rig = edited_rig(state.own, scene["edits"])
     scene |= changes(state, rig, scene["edits"])
     scene |= {**of_character(state, arrival), **motion(session, scene["panel"], arrival)}
     with restoring(session):
@@ -210,13 +207,15 @@ def painted_score(state: Any, step: Step) -> float:
 
 
 def painted_scores(state: Any) -> dict[str, float]:
-    """Return the same for each method that is compared, by its title."""
+    """Return the same for each method that is compared, by its caption."""
     step, painted = state.lesson_step, selected(state)
     if step is None or step.answer.kind != "paint" or painted is None or state.panel != "compare":
         return {}
     tables = {name: weights_of(state, name) for name in state.methods}
     return {
-        title_of(name): _agreement(painted, branch_weights(state, step.answer.joint, table))
+        shown_title(state, name): _agreement(
+            painted, branch_weights(state, step.answer.joint, table)
+        )
         for name, table in tables.items()
         if table is not None
     }

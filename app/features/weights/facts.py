@@ -42,8 +42,8 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         weights), "explain" (whether explanations are on), "why" (the explanation for each joint,
         see `explanation_facts`), "overruled" (whether its weights were set by a person) and
         "offered" (joints whose weight can be set). Lengths are in the file's units, whose name is
-        "unit". On the panel Compare "method" names the method that was clicked; only the page's own has distances and
-        an explanation.
+        "unit". On the panel Compare "method" names the method that was clicked; only the page's
+        own has distances and an explanation.
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):

@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from cutcell.editing import Edits
+from cutcell.editing import Edits, edited_rig
 
 from ...document import recording
 from ...document.method import GRAPH, WEIGHTS, method_of
 from ...document.session import Session
 from ...document.state import State
-from ..correct.choices import applied, changes
+from ..correct.choices import changes
 
 CHAIN = ("built_graph", "bound", "influences", "recomputed", "binding")
 """Results that follow each other from a character to its weights."""
@@ -59,7 +59,7 @@ def go_back(session: Session) -> None:
         return
     if state.graph is None:
         session.notice = state.message
-    changed = changes(state, applied(state.own, edits), edits)
+    changed = changes(state, edited_rig(state.own, edits), edits)
     recording.withdraw(session, {**choices, **changed})
 
 

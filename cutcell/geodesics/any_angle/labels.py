@@ -14,6 +14,7 @@ of distance. The last bucket holds everything beyond, until `move_on`.
 from __future__ import annotations
 
 import numpy as np
+from numba import config
 from numpy.typing import NDArray
 
 from ...runtime.compiled import compiled
@@ -40,7 +41,8 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
 
     A parent is the label of the node where the path bends last (Theta*), or ~bone.
     """
-    labels = np.empty(nodes * each, LABEL)
+    make = np.recarray if config.DISABLE_JIT else np.empty  # whose entries have no attributes
+    labels = make(nodes * each, LABEL)
     labels[:] = np.inf, NO_JOINT, LOOSE, 0
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
 

@@ -17,7 +17,7 @@ from ...rig import TriangleMesh
 from ...rig.checks import check_choice, check_integer, check_number
 from ..lattice import Lattice
 from ..libraries import CASTERS, fast_winding_numbers
-from ..rays import AXES, cast_rays, points_on_rays
+from ..rays import AXES, cast_rays, part_at_contacts, points_on_rays
 from ..segments import divide_rays
 from ..surface import prepare_surface
 from ..winding.exact import WindingNumbers
@@ -137,6 +137,7 @@ def slice_rays(
     surface = prepare_surface(mesh, resolution, orient)
     caster = CASTERS.get(rays, cast_rays)
     hits = caster(surface.vertices, surface.faces, resolution, axis)
+    hits = part_at_contacts(hits, surface.part)
     numbers = np.arange(resolution)
     first = normal == AXES[axis][0]
     numbers = index * resolution + numbers if first else numbers * resolution + index

@@ -23,6 +23,10 @@ WELD = 1 << 20
 """Steps of a grid along the longest side: vertices in one cell are the same."""
 BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
+MAX_SAMPLES = 10_000_000
+"""Of large triangles in one place there may be any number: all are then cut less small."""
+SAMPLES_AT_ONCE = 500_000
+"""Before they are merged."""
 
 
 class Body:
@@ -34,7 +38,7 @@ class Body:
         corners = _outward((mesh.vertices - low) / self.size, mesh.faces)
         self._low = low
         self._corners = corners
-        self.points, self._areas = _merged(*_samples(corners))
+        self.points, self._areas = _samples(corners)
         self._tree = cKDTree(self.points)
 
     def to_unit(self, points: NDArray) -> NDArray[np.float64]:
@@ -90,31 +94,35 @@ def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float6
 
 
 def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors."""
+    """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors.
+
+    Samples in each cell of a grid are merged, so that fine meshes have no more than coarse.
+    """
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS).astype(int)
-    area = normals(corners) / 2
-    points, areas = [], []
+    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS)
+    excess = max(1, np.sqrt((splits**2).sum() / MAX_SAMPLES))
+    splits = np.maximum(splits / excess, 1).astype(int)
+    order = np.argsort(splits, kind="stable")
+    block = np.cumsum(splits[order] ** 2) // SAMPLES_AT_ONCE
+    sums = np.empty((0, 7))  # of each cell: the sums of its points and areas, and their number
+    for some in np.split(order, np.flatnonzero(np.diff(block)) + 1):
+        sums = np.concatenate([sums, _cut(corners[some], splits[some])])
+        cell = np.floor(sums[:, :3] / sums[:, 6:] / CELL).astype(np.int64)
+        where = np.unique(cell @ [1 << 42, 1 << 21, 1], return_inverse=True)[1]
+        sums = np.stack([np.bincount(where, column) for column in sums.T], axis=1)
+    return sums[:, :3] / sums[:, 6:], sums[:, 3:6]
+
+
+def _cut(corners: NDArray[np.float64], splits: NDArray[np.int_]) -> NDArray[np.float64]:
+    """Cut triangles into splits² equal ones; return middles, area vectors and ones, (s, 7)."""
+    rows, area = [], normals(corners) / 2
     for n in np.unique(splits):
         is_split = splits == n
         weights = _middles(int(n))
-        points.append(np.einsum("sc,mci->msi", weights, corners[is_split]).reshape(-1, 3))
-        areas.append(np.repeat(area[is_split] / n**2, len(weights), axis=0))
-    return np.concatenate(points), np.concatenate(areas)
-
-
-def _merged(
-    points: NDArray[np.float64], areas: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Merge the samples in each cell of a grid, so that fine meshes have no more than coarse."""
-    cell = np.floor(points / CELL).astype(np.int64)
-    key = (cell * [1 << 42, 1 << 21, 1]).sum(axis=1)
-    where, count = np.unique(key, return_inverse=True, return_counts=True)[1:]
-
-    def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.stack([np.bincount(where, x, len(count)) for x in values.T], axis=1)
-
-    return summed(points) / count[:, None], summed(areas)
+        points = np.einsum("sc,mci->msi", weights, corners[is_split]).reshape(-1, 3)
+        areas = np.repeat(area[is_split] / n**2, len(weights), axis=0)
+        rows.append(np.column_stack([points, areas, np.ones(len(points))]))
+    return np.concatenate(rows)
 
 
 def _middles(splits: int) -> NDArray[np.float64]:

@@ -73,6 +73,18 @@ def test_other_parts_are_no_fault(at, joint, shares):
     assert "far-parts" not in cutcell.diagnose(rig, 24, only_weights=True)
 
 
+def test_an_empty_joint_in_a_part_is_named_but_no_control():
+    at = np.array([0.5, 0.2, 0.0])
+    rig, _ = with_part(at, 1, bone=[at, np.add(at, [0.5, 0, 0])])
+    names, deform = list(rig.skeleton.names), np.ones(len(rig.skeleton.names), bool)
+    deform[-2:] = False
+    for name, expected in (("prop", names.index("blade")), ("ik_ctrl", -1)):
+        names[-2] = name
+        skeleton = replace(rig.skeleton, names=names, deform=deform)
+        finding = cutcell.diagnose(replace(rig, skeleton=skeleton), 24, only_weights=True)
+        assert finding["far-parts"].empty == (expected,)
+
+
 def test_a_part_that_may_not_follow_the_nearest_is_no_fault():
     rig, part = with_part([0.9, 0.15, 0.0], 1)
     allowed = np.ones(rig.weights.shape, bool)

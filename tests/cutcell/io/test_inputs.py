@@ -108,7 +108,7 @@ def test_beginnings_are_told_apart(contents):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", [["bind", "-r16", "-q"], ["clean", "-r16", "-q"], ["bind"]])
+@pytest.mark.parametrize("command", [["clean", "-r16", "-q"], ["bind", "-r16"]])
 def test_the_command_reads_and_writes_pipes(contents, tmp_path, command):
     words = [sys.executable, "-m", "cutcell", *command, "-", "-"]
     done = subprocess.run(words, input=contents[".glb"], capture_output=True, check=True)
@@ -124,7 +124,7 @@ def test_the_command_writes_nothing_after_an_error(contents):
     done = subprocess.run(words, input=b"a letter", capture_output=True)
     assert (done.returncode, done.stdout) == (2, b"")
     assert b"error: stdin: " in done.stderr
-    for nothing in ("</dev/null", "<&-", "< /"):
+    for nothing in ("</dev/null", "<&-"):
         line = f"{sys.executable} -m cutcell bind - - {nothing}"
         done = subprocess.run(line, shell=True, capture_output=True)
         assert (done.returncode, done.stdout) == (2, b"")

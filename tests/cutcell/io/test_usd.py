@@ -323,5 +323,5 @@ def test_what_of_a_skin_is_not_read_is_listed_once(load):
     """
     rig = load(text().replace("token visibility", f"{shapes}\n        token visibility"))
     check(rig)
-    for part in ("blend shapes", "dual-quaternion skinning"):
+    for part in ("morph targets", "dual-quaternion skinning"):
         assert sum(f"{part} (body)" in w for w in rig.warnings) == 1

@@ -109,8 +109,8 @@ def left_out_warnings(
         [one.name for one in left_out if one.why == OUTSIDE],
     )
     reasons = (
-        "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them",
-        "have no skin and hang on no joint, and are left out. `bind --accessories` binds them",
+        "move rigidly with a joint and are only bound if they are loaded as accessories",
+        "have no skin, hang on no joint, and are left out unless they are loaded as accessories",
         "are outside of the default scene, and are left out. Move them to that scene",
     )
     pairs = zip(groups, reasons, strict=True)
