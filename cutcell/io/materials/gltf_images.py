@@ -85,7 +85,8 @@ def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict
     if not moved and (to_text or document.binary):
         return {}
     files: dict[Path, bytes] = {}
-    read, views = cache(_content), {}  # many images may be of one file
+    read = cache(_content)  # many images may be of one file
+    views: dict[bytes, int] = {}
     for image in buffer.document.get("images", []):
         uri = image.get("uri")
         if not isinstance(uri, str) or uri.startswith("data:"):

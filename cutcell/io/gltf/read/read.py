@@ -86,7 +86,9 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
             rig = read_bare(document, Nodes(document), path.stem)
         else:
             rig = read_rig(document, path, accessories=accessories, has_bones=True)
-        for owner in ranges_in(document.json):  # which saving copies
+        many = ("accessors", "animations")  # which name buffers by views
+        rest = {key: value for key, value in document.json.items() if key not in many}
+        for owner in ranges_in(rest):  # saving copies them
             document.view_range(owner, "a buffer view")
         return replace(rig, warnings=(*unread(document), *rig.warnings))
 
