@@ -16,8 +16,7 @@ TIE = 1e-9
 """Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
 a lattice cell has eight nearest nodes, and rounding must not choose among them."""
 LONGEST = 20.0
-"""Longest sides of the mesh: beyond, a bone has no samples. It starts at most ten diagonals away
-from the mesh (`check_units`), but may lead to a joint however far that does not deform."""
+"""Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
 
 
 @dataclass(frozen=True, eq=False)
