@@ -145,8 +145,8 @@ def bone_samples(
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(way, axis=1)
         way = way * (LONGEST / np.maximum(length, LONGEST))[:, None]
-        length = np.minimum(length, LONGEST)
-        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+        cells = np.minimum(length, LONGEST) * graph.lattice.resolution
+        counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]
     share = np.where(counts > 1, 0.0, 0.5)[bone] + number / np.maximum(counts - 1, 1)[bone]

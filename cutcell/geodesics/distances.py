@@ -276,6 +276,6 @@ def bone_distances(
     distances = BoneDistances(
         joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )
-    measured = (nearest_joints, within) if nearest_joints else (None, np.inf)
-    fingerprint = distance_fingerprint(skeleton, method, allowed, *measured, nearest)
-    return distances.identified(graph.fingerprint and {**graph.fingerprint, **fingerprint})
+    within = within if nearest_joints else np.inf
+    own = distance_fingerprint(skeleton, method, allowed, nearest_joints, within, nearest)
+    return distances.identified(graph.fingerprint and {**graph.fingerprint, **own})
