@@ -25,8 +25,6 @@ BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
 MAX_SAMPLES = 10_000_000
 """Of large triangles in one place there may be any number: all are then cut less small."""
-SAMPLES_AT_ONCE = 500_000
-"""Before they are merged."""
 
 
 class Body:
@@ -103,7 +101,7 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     excess = max(1, np.sqrt((splits**2).sum() / MAX_SAMPLES))
     splits = np.maximum(splits / excess, 1).astype(int)
     order = np.argsort(splits, kind="stable")
-    block = np.cumsum(splits[order] ** 2) // SAMPLES_AT_ONCE
+    block = np.cumsum(splits[order] ** 2) // (BLOCK // 4)
     sums = np.empty((0, 7))  # of each cell: the sums of its points and areas, and their number
     for some in np.split(order, np.flatnonzero(np.diff(block)) + 1):
         sums = np.concatenate([sums, _cut(corners[some], splits[some])])
