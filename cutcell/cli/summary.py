@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances
-from ..geometry.triangles import face_edges
+from ..geometry.triangles import face_edges, label_components
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig import Rig, Skeleton, TriangleMesh
-from ..weights.rig_falloff.components import label_components
 
 KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 """Name of each kind of node and edge."""
@@ -20,7 +19,7 @@ KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 
 def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
     """Count the elements of a mesh once equal positions are welded."""
-    faces = graph.vertex_node[mesh.faces].astype(np.int64)
+    faces = graph.faces
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # welded to nothing
     uses = np.unique(face_edges(faces), axis=0, return_counts=True)[1]
     welded = int((graph.node_kind == MESH).sum())

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...geometry.triangles import normals
+from ...geometry.triangles import label_components, normals
 from ..mesh import TriangleMesh
 
 SPACING = 0.02
@@ -79,9 +77,7 @@ def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float6
     """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out."""
     grid = np.rint(vertices * WELD).astype(np.int64) @ [1 << 42, 1 << 21, 1]
     welded = np.unique(grid, return_inverse=True)[1][faces]
-    ends = welded[:, :2].ravel(), welded[:, 1:].ravel()
-    links = coo_matrix((np.ones(len(ends[0]), bool), ends), (len(vertices), len(vertices)))
-    part = connected_components(links, directed=False)[1][welded[:, 0]]
+    part = label_components(welded, len(vertices))[welded[:, 0]]
     corners = vertices[faces]
     sums = np.stack([np.bincount(part, x) for x in corners.mean(axis=1).T], axis=1)
     middles = sums / np.maximum(np.bincount(part), 1)[:, None]
