@@ -190,9 +190,9 @@ class PageHandler(RequestHandler):
 class SocketHandler(WSHandler):
     """Accepts websockets only from pages of this server, up to the limit of sessions."""
 
-    def initialize(self, hosts: Collection[str], clients: Counter[str], **of_bokeh: Any) -> None:
+    def initialize(self, *args: Any, **options: Any) -> None:
         """Store the options of the route; `clients` counts the open websockets of each address."""
-        self._hosts, self._clients = hosts, clients
+        self._hosts, self._clients = options["hosts"], options["clients"]
         self._is_counted = False
 
     async def prepare(self) -> None:
