@@ -8,23 +8,21 @@ from tornado.iostream import IOStream
 
 from .handlers import MAX_SESSIONS
 
-MAX_CONNECTIONS = 400
+MIN_CONNECTIONS, MAX_CONNECTIONS = 16, 400
 """Limit of connections, besides websockets. A browser opens up to six to load a page."""
-MIN_CONNECTIONS = 16
 FILES = 48
 """Files of the process that are neither connections nor websockets, at most."""
 
 
 def max_connections() -> int:
     """Return how many connections fit into the number of files that this process may open."""
-    if sys.platform == "win32":
-        return MAX_CONNECTIONS
-    import resource
+    if sys.platform != "win32":
+        import resource
 
-    files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if files == resource.RLIM_INFINITY:
-        return MAX_CONNECTIONS
-    return min(MAX_CONNECTIONS, max(files - FILES - MAX_SESSIONS, MIN_CONNECTIONS))
+        files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+        if files != resource.RLIM_INFINITY:
+            return min(MAX_CONNECTIONS, max(files - FILES - MAX_SESSIONS, MIN_CONNECTIONS))
+    return MAX_CONNECTIONS
 
 
 class LimitedServer(HTTPServer):

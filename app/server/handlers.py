@@ -20,12 +20,7 @@ from bokeh.server.util import check_allowlist
 from bokeh.server.views.ico_handler import IcoHandler
 from bokeh.server.views.multi_root_static_handler import MultiRootStaticHandler
 from bokeh.server.views.static_handler import StaticHandler
-from bokeh.util.token import (
-    check_token_signature,
-    generate_jwt_token,
-    generate_session_id,
-    get_token_payload,
-)
+from bokeh.util import token as tokens
 from panel.io.document import _cleanup_doc
 from panel.io.resources import Resources
 from panel.io.server import WSHandler, server_html_page_for_session
@@ -179,8 +174,8 @@ class PageHandler(RequestHandler):
         arguments = {name: values[:1] for name, values in self.request.arguments.items()}
         server: Any = self.application
         signed = {"secret_key": server.secret_key, "signed": server.sign_sessions}
-        token = generate_jwt_token(
-            generate_session_id(**signed),
+        token = tokens.generate_jwt_token(
+            tokens.generate_session_id(**signed),
             **signed,
             extra_payload={
                 "headers": {"User-Agent": agent[:400]},
@@ -195,16 +190,9 @@ class PageHandler(RequestHandler):
 class SocketHandler(WSHandler):
     """Accepts websockets only from pages of this server, up to the limit of sessions."""
 
-    def initialize(
-        self,
-        application_context: Any,
-        bokeh_websocket_path: str,
-        hosts: Collection[str] = (),
-        clients: Counter[str] | None = None,
-    ) -> None:
+    def initialize(self, *args: Any, **options: Any) -> None:
         """Store the options of the route; `clients` counts the open websockets of each address."""
-        self._hosts = hosts
-        self._clients = Counter() if clients is None else clients
+        self._hosts, self._clients = options["hosts"], options["clients"]
         self._is_counted = False
 
     async def prepare(self) -> None:
@@ -250,12 +238,11 @@ class SocketHandler(WSHandler):
         """Return whether the request has a token that this server made a few minutes ago."""
         server: Any = self.application
         try:
-            kind, token = self.request.headers["Sec-WebSocket-Protocol"].split(",")
-            token = token.strip()
+            kind, token = self.request.headers["Sec-WebSocket-Protocol"].replace(" ", "").split(",")
             return (
                 kind == "bokeh"
-                and check_token_signature(token, server.secret_key, server.sign_sessions)
-                and get_token_payload(token)["session_expiry"] > time.time()
+                and tokens.check_token_signature(token, server.secret_key, server.sign_sessions)
+                and tokens.get_token_payload(token)["session_expiry"] > time.time()
             )
         except Exception:  # of Bokeh, which expects tokens to be whole
             return False

@@ -38,6 +38,16 @@ class Serving:
         """Return the sessions that Bokeh knows."""
         return self.server.get_sessions("/")
 
+    @property
+    def is_left(self) -> bool:
+        """Whether no websocket is open and no session is left."""
+        routers = [rule.target for rule in self.server._tornado.default_router.rules]
+        rules = [rule for router in routers for rule in getattr(router, "rules", ())]
+        (clients,) = [
+            rule.target_kwargs["clients"] for rule in rules if "clients" in rule.target_kwargs
+        ]
+        return not clients.total() and not self.sessions
+
     def get(self, path: str = "/", method: str = "GET", **headers: str) -> Any:
         """Ask for a page; return the answer, its text in `text`."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)

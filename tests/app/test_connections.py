@@ -124,7 +124,7 @@ def test_closed_connections_and_websockets_are_not_counted(here, opened):
 
 
 def test_websockets_that_share_a_session_are_limited(here, opened, monkeypatch):
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     token = here.token()
     monkeypatch.setattr("cutcell_app.server.handlers.MAX_SESSIONS", 2)
     for _ in range(2):

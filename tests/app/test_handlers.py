@@ -28,7 +28,7 @@ def here():
 @pytest.fixture
 def begun(here, monkeypatch):
     """Collect the sessions that begin, in order."""
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     seen = []
     begin = Session.__init__
 
@@ -71,7 +71,7 @@ def test_a_page_of_this_server_may_open_a_websocket(here):
 def test_who_is_gone_at_once_is_forgotten(here):
     for _ in range(3):
         here.upgrade(here.address)
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
 
 
 def test_a_host_that_this_server_is_not_is_refused(here, begun):
@@ -180,7 +180,7 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
 
 
 def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     monkeypatch.setattr(handlers, "MAX_SESSIONS", 2)
     token = here.token()
     visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
@@ -196,7 +196,7 @@ def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monke
 
 
 def test_one_client_cannot_fill_the_server(here, monkeypatch):
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     monkeypatch.setattr(handlers, "MAX_SESSIONS_OF_CLIENT", 2)
     visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
     assert here.upgrade(here.address) == 503

@@ -70,7 +70,7 @@ def here():
 @pytest.fixture
 def untouched(here, monkeypatch, caplog):
     """Check that what is asked begins no session, imports nothing and logs no traceback."""
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     begun, modules = [], set(sys.modules)
     monkeypatch.setattr(Session, "__init__", lambda self, *args, **kwargs: begun.append(self))
     yield
