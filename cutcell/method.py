@@ -207,11 +207,6 @@ class Method:
         return others.get(self, "custom")
 
     @property
-    def fills_voids(self) -> bool:
-        """Whether the voids of a hollow body are body, too; not so in the paper's graph."""
-        return self.connectivity != 6
-
-    @property
     def joints_needed(self) -> int | None:
         """Number of nearest joints of each vertex that distances are needed from; None: all."""
         return joints_needed(self.falloff, self.max_influences)

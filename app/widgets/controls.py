@@ -70,7 +70,7 @@ def choice(name: str, title: str = "", above: int = 2, **options: Any) -> Any:
     return [caption(title, margin=(above, 0, 0, 0), **shared), buttons] if title else buttons
 
 
-def select(name: str, label: str, **options: Any) -> Control:
+def select(name: str, label: Any, **options: Any) -> Control:
     """Return a menu."""
     style = {**SMALL, "label": label, "options": names_of(name)}
     return Control(pmui.Select, name, **{**style, **options})
@@ -82,7 +82,7 @@ def names_of(name: str) -> dict[str, Any]:
 
 
 def pick(
-    label: str,
+    label: Any,
     names: Callable[[Any], Sequence[str]],
     index: Callable[[Any], int],
     act: Callable[[Session, int], Any],
@@ -94,7 +94,7 @@ def pick(
 
     Parameters
     ----------
-    label : str
+    label : str or callable
     names, index : callable
         Functions of a `Reader`: the names, and the index of the chosen one.
     act : callable

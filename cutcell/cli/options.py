@@ -156,18 +156,17 @@ Lock = Annotated[
     ),
 ]  # fmt: skip
 
-_METHOD = (
-    "--method", "M",
-    "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
-)  # fmt: skip
-_RESOLUTION = (
-    "--resolution -r", "R",
-    "Rays along the longest side of the mesh. More rays separate close parts better, but take"
-    " more time and memory.",
-)  # fmt: skip
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
-    "method": (str | None, None, *_METHOD[:-1], f"{_METHOD[-1]} Default: animation."),
-    "resolution": (int | None, None, *_RESOLUTION[:-1], f"{_RESOLUTION[-1]} Default: 64."),
+    "method": (
+        str | None, None, "--method", "M",
+        "Defaults of the options below. animation: weights for animation. paper: as in the paper."
+        " Default: animation.",
+    ),
+    "resolution": (
+        int | None, None, "--resolution -r", "R",
+        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
+        " more time and memory. Default: 64.",
+    ),
     "connectivity": (
         str | None, None, "--connectivity", "C",
         "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
@@ -226,10 +225,8 @@ def _annotated(
 
 if TYPE_CHECKING:
     Resolution = int
-    MethodChoice = str
 else:
-    Resolution = _annotated(int, 64, *_RESOLUTION)
-    MethodChoice = _annotated(str, "paper", *_METHOD)
+    Resolution = _annotated(*METHOD_OPTIONS["resolution"])
 
 
 def with_options(
@@ -284,4 +281,5 @@ def layered_method(options: Mapping[str, Any], edits: Edits | None) -> tuple[Met
     chosen = {name: value for name, value in options.items() if value is not None}
     stored = {} if edits is None or "method" in chosen else edits.method
     stored = {name: "all" if value is None else value for name, value in stored.items()} | chosen
-    return chosen_method(stored), stored.get("resolution")
+    method = chosen_method(stored)
+    return method, method.resolution if "resolution" in stored else None

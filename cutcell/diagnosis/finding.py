@@ -66,6 +66,7 @@ KINDS = {
         "{faces:face/form} a second wall inside of the body, {part} of the surface: programs that "
         "bind through the body find it empty.",
         "Delete the inner surface. Binding already fills the body, but for the paper's method.",
+        "delete the inner surface",
     ),
     "cracks": Kind(
         "Cracks", "note",

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics.fallback import REACHED
+from ..geometry.triangles import label_components
 from ..runtime.display import count, share
 from .finding import Finding, Pose, found
 from .subject import Subject
@@ -95,9 +94,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         influenced = np.flatnonzero(follows)
         number[influenced] = np.arange(len(influenced))
         between = number[edges[:, follows[edges].all(axis=0)]]
-        ones = np.ones(between.shape[1], np.int8)
-        graph = coo_array((ones, tuple(between)), shape=(len(influenced),) * 2)
-        label = connected_components(graph, directed=False)[1]
+        label = label_components(between.T, len(influenced))
         total = np.bincount(label, (at_welded[j] * area)[influenced])
         # An island is away from a larger region of the same joint on the same component.
         of = subject.component[influenced]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import face_edges, unit_normals
 from ..geometry.weld import WELD_TOLERANCE, weld
-from ..graph.surface import REVERSE, WALL
+from ..graph.surface import WALL
 from .finding import Finding, found
 from .intersections import find_intersections
 from .subject import Subject
@@ -138,19 +138,10 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
 
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
-    faces = np.sort(subject.faces, axis=1)
-    order = np.lexsort(faces.T)
-    ordered = faces[order]
-    is_copy = np.append(False, (ordered[1:] == ordered[:-1]).all(axis=1))
-    copies = np.flatnonzero(is_copy)
-    first = np.maximum.accumulate(np.where(is_copy, 0, np.arange(len(order))))[copies]
-    # The two sides of a sheet are no duplicates.
-    turn = _rolled(subject.graph.faces[subject.whole[order]])
-    copies = copies[(turn[copies] == turn[first]).all(axis=1)]
-    reverse = np.flatnonzero(subject.graph.omitted == REVERSE)
-    yield from found(
-        "duplicate-faces", faces=np.union1d(subject.whole[order[copies]], reverse)
-    )
+    # The two sides of a face are no duplicates.
+    faces = _rolled(subject.graph.faces[subject.whole])
+    copies = np.delete(subject.whole, np.unique(faces, axis=0, return_index=True)[1])
+    yield from found("duplicate-faces", faces=copies)
 
 
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:

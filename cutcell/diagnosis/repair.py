@@ -23,7 +23,7 @@ from .weights import INFLUENCES, check_weights
 Weights = NDArray[np.float64]
 
 TURNED = "inverted-faces"
-FACES = {TURNED, "duplicate-faces", "degenerate-faces"}
+FACES = {TURNED, "hollow-body", "duplicate-faces", "degenerate-faces"}
 NOTHING = "unchanged, because this repair does not help"
 ROUNDING = 1e-9
 MIN_GAIN = 0.01

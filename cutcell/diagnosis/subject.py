@@ -11,7 +11,7 @@ from ..geodesics import BoneDistances, bone_distances
 from ..geodesics.bones import Bones
 from ..geometry.edges import MeshEdges, find_edges
 from ..geometry.segments import distance_to_segment
-from ..geometry.triangles import areas
+from ..geometry.triangles import areas, label_components
 from ..graph import CutCellGraph, build_graph
 from ..graph.orientation.orient import flipped
 from ..graph.surface import WALL
@@ -21,7 +21,6 @@ from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import Body
 from ..runtime.display import share, shown_name
 from ..runtime.progress import Progress, silent
-from ..weights.rig_falloff.components import label_components
 
 OUTSIDE = 0.05
 """Part of the longest side: joints farther from the body have no distances through it."""

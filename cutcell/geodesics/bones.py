@@ -16,8 +16,7 @@ TIE = 1e-9
 """Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
 a lattice cell has eight nearest nodes, and rounding must not choose among them."""
 LONGEST = 20.0
-"""Longest sides of the mesh: beyond, a bone has no samples. It starts at most ten diagonals away
-from the mesh (`check_units`), but may lead to a joint however far that does not deform."""
+"""Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +145,8 @@ def bone_samples(
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(way, axis=1)
         way = way * (LONGEST / np.maximum(length, LONGEST))[:, None]
-        length = np.minimum(length, LONGEST)
-        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+        cells = np.minimum(length, LONGEST) * graph.lattice.resolution
+        counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]
     share = np.where(counts > 1, 0.0, 0.5)[bone] + number / np.maximum(counts - 1, 1)[bone]

@@ -276,15 +276,6 @@ def bone_distances(
     distances = BoneDistances(
         joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )
-    measured = (nearest_joints, within) if nearest_joints else (None, np.inf)
-    fingerprint = distance_fingerprint(skeleton, method, allowed, *measured, nearest)
-    return distances.identified(graph.fingerprint and {**graph.fingerprint, **fingerprint})
-
-
-def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
-    """Compute the distances of given bones to each vertex along a graph, without a fallback."""
-    solver = BoneDistanceSolver(graph)
-    sources = solver.sources(bones, samples)
-    joint = per_joint(solver.paths(bones, sources), bones, joints)
-    why = why_not_reached(solver, bones, sources, joint, solver.targets, None)
-    return BoneDistances(joint, None, None, bones, sources, why[graph.vertex_node], solver)
+    within = within if nearest_joints else np.inf
+    own = distance_fingerprint(skeleton, method, allowed, nearest_joints, within, nearest)
+    return distances.identified(graph.fingerprint and {**graph.fingerprint, **own})

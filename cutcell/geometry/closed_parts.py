@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from .edges import NONE
-from .triangles import normals
+from .triangles import label_components, normals
 
 STEPS = 1 << 20
 """Of a full turn about an edge: faces within the same step lie on each other."""
@@ -31,17 +29,22 @@ def separate_closed_parts(
     partner = _pair_around_edges(vertices, corners, partner, is_whole)
     start, end, is_paired = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), partner != NONE
     n, k, used = len(index), len(vertices), np.unique(start[is_whole])
-    part = label(n, np.append(start, start[is_paired]), np.append(end, start[partner[is_paired]]))
+    across = start[is_paired], start[partner[is_paired]]
+    links = np.concatenate([np.stack([start, end], axis=1), np.stack(across, axis=1)])
+    part = label_components(links, n)
     is_open = np.zeros(n + k, np.bool_)
     is_open[part[start[is_whole & ~is_paired]]] = True
     is_open[n + index[used[is_open[part[used]]]]] = True
     welded = used[is_open[n + index[used]]]
-    group = label(n + k, part[welded], n + index[welded])
-    is_open_group = np.bincount(group, is_open) > 0
-    group = group[part]
-    closed = np.where(is_open_group[group], NONE, group)[faces[:, 0]].astype(np.int32)
+    group = label_components(np.stack([part[welded], n + index[welded]], axis=1), n + k)
+    is_open = np.bincount(group, is_open) > 0
+    closed = group[part[faces[:, 0]]]
+    closed = np.where(is_open[closed], NONE, closed).astype(np.int32)
 
-    place, group = index[used], group[used]
+    place, group, group_at = index[used], group[part[used]], np.empty(k, np.int32)
+    group_at[place] = group
+    if (group_at[place] == group).all():
+        return vertices, index, closed
     low, high = np.full(n + k, k), np.full(n + k, NONE)
     np.minimum.at(low, group, place)
     np.maximum.at(high, group, place)
@@ -50,17 +53,7 @@ def separate_closed_parts(
     key = index.astype(np.int64) * (n + k)
     key[used] += rank[group]
     keys = np.unique(np.append(key[used], key[np.isin(index, place, invert=True)]))
-    if len(keys) == k:
-        return vertices, index, closed
     return vertices[keys // (n + k)], np.searchsorted(keys, key).astype(np.int32), closed
-
-
-def label(count: int, start: NDArray[np.integer], end: NDArray[np.integer]) -> NDArray[np.int32]:
-    """Label the connected components of `count` nodes with links from start to end, any shape."""
-    links = start.ravel(), end.ravel()
-    graph = coo_array((np.ones(start.size, np.bool_), links), shape=(count, count))
-    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return labels
 
 
 def _pair_around_edges(
@@ -83,8 +76,7 @@ def _pair_around_edges(
         return_counts=True,
     )
     along = vertices[high] - vertices[low]
-    length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    along /= length
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
     out = vertices[np.roll(faces, -2, axis=1).ravel()[single]] - vertices[low]
     out -= (out * along).sum(axis=1, keepdims=True) * along
     reference = out[first][which]

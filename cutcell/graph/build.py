@@ -84,9 +84,8 @@ def build_graph(
             report_stage("graph", done)
 
         report(0.0)
-        surface = prepare_surface(
-            mesh, resolution, method.orient, method.fills_voids, share_of(report, 0, 0.05)
-        )
+        fill = method.connectivity != 6  # the paper's graph leaves voids empty
+        surface = prepare_surface(mesh, resolution, method.orient, fill, share_of(report, 0, 0.05))
         check_hits(surface)
         shape = surface.vertices, surface.faces, resolution
         if rays == "raster":

@@ -78,7 +78,7 @@ def prepare_surface(
 ) -> Surface:
     """Bring a mesh into the unit cube, weld its vertices and orient its faces.
 
-    With `fill`, walls of voids are left out, and their vertices become the nearest of the others.
+    With `fill`, walls of voids are left out, and the nearest other vertices stand for theirs.
 
     Raises
     ------
@@ -106,7 +106,11 @@ def prepare_surface(
         inverted, is_wall = find_inverted(vertices, faces, mesh_edges.partner, report)
         if fill and is_wall.any():
             omitted[is_wall], inverted[is_wall] = WALL, False
-            vertices, index, faces = _without(vertices, index, faces, is_wall)
+            used = np.unique(faces[~is_wall])
+            faces = np.where(is_wall[:, None], faces[:, :1], faces)
+            node = cKDTree(vertices[used]).query(vertices)[1].astype(np.int32)
+            node[used] = np.arange(len(used))
+            vertices, index, faces = vertices[used], node[index], node[faces]
         faces = flipped(faces, inverted)
         if (inverted | (omitted == WALL)).any():
             mesh_edges = find_edges(faces)
@@ -114,24 +118,6 @@ def prepare_surface(
     return Surface(
         lattice, vertices, index, faces, part, mesh_edges.edges, boundary, inverted, omitted
     )
-
-
-def _without(
-    vertices: NDArray[np.float64],
-    index: NDArray[np.int32],
-    faces: NDArray[np.int32],
-    is_wall: NDArray[np.bool_],
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
-    """Collapse some faces, and replace vertices of these alone by the nearest of the rest."""
-    kept = np.unique(faces[~is_wall])
-    nearest = kept[cKDTree(vertices[kept]).query(vertices)[1]]
-    moved = np.setdiff1d(faces[is_wall], kept)
-    target = np.arange(len(vertices))
-    target[moved] = nearest[moved]
-    remaining, target = np.unique(target, return_inverse=True)
-    target = target.astype(np.int32)
-    faces = np.where(is_wall[:, None], faces[:, :1], faces)
-    return vertices[remaining], target[index], target[faces]
 
 
 def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:

@@ -40,9 +40,11 @@ def as_file(source: Input) -> Iterator[Path]:
     name: object = "bytes"
     if isinstance(source, str | os.PathLike):
         path = Path(source)
-        if ADDRESS.match(str(path)) and not path.exists():
-            raise FileError(f"{source} is an address, not a file. Download the file first")
-        if not path.is_fifo() and not str(path).startswith(OPENED):
+        exists = os.path.exists(path)  # unlike `Path.exists`, of any name
+        if ADDRESS.match(str(path)) and not exists:
+            address = re.sub(":/+", "://", str(source), count=1)  # a `Path` has one slash less
+            raise FileError(f"{address} is an address, not a file. Download the file first")
+        if not (exists and path.is_fifo()) and not str(path).startswith(OPENED):
             yield path
             return
         name, data = path.name, read_bytes(path)

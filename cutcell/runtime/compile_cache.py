@@ -130,7 +130,7 @@ def _lock(name: str, stack: ExitStack) -> None:
 
 def is_complete() -> bool:
     """Return whether all functions of a binding are in the cache, or none is to be compiled."""
-    return bool(config.DISABLE_JIT) or any(
+    return bool(vars(config)["DISABLE_JIT"]) or any(
         os.path.exists(folder / COMPLETE) for folder in folders()
     )
 

@@ -118,10 +118,7 @@ def permit(context: Context) -> NDArray[np.float64]:
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
     distance = np.where(context.allowed[lost].T, context.distances.joint[:, lost], np.inf)
     if np.isinf(distance.min(axis=0)).any():
-        raise WeightsError(
-            "a vertex has no distance of a joint that it may follow; pass the same `allowed` to "
-            "bone_distances"
-        )
+        raise WeightsError("no joint that a vertex may follow was measured; measure by `allowed`")
     permitted[lost, distance.argmin(axis=0)] = 1
     return permitted / permitted.sum(axis=1, keepdims=True)
 

@@ -1,5 +1,6 @@
 """What binding must never depend on, and what it tells."""
 
+import re
 import threading
 
 import numpy as np
@@ -238,6 +239,36 @@ def test_joints_that_get_no_weight_are_named():
         result = bind(Rig(rig.mesh, skeleton), 16, max_influences=1)
         assert not result.weights[:, 4].any()
         assert any("twin" in warning for warning in result.warnings) == is_named
+
+
+def thin_hand():
+    """Make a palm with four thin fingers, whose first bones are short and below its skin."""
+    palm = trimesh.creation.box(bounds=[[-0.1, -0.1, -0.02], [0, 0.1, 0.02]])
+    parts = [palm.subdivide().subdivide().subdivide().subdivide()]
+    joints, parents = [[-0.08, 0, 0], [-0.05, 0, 0]], [-1, 0]
+    for y in (-0.06, -0.02, 0.02, 0.06):
+        finger = trimesh.creation.box(
+            bounds=[[-0.01, y - 0.004, -0.004], [0.009, y + 0.004, 0.004]]
+        )
+        parts.append(finger.subdivide().subdivide().subdivide())
+        for k, x in enumerate((-0.01, 0, 0.003, 0.006)):
+            parents.append(1 if k == 0 else len(joints) - 1)
+            joints.append([x, y, 0])
+    mesh = trimesh.util.concatenate(parts)
+    return Rig(TriangleMesh(mesh.vertices, mesh.faces), Skeleton(joints, parents))
+
+
+def test_a_lattice_too_coarse_for_a_joint_names_a_resolution_that_is_not():
+    rig = thin_hand()
+    coarse = bind(rig, 8)
+    lost = np.flatnonzero(~coarse.weights.any(axis=0))
+    assert len(lost)
+    (warning,) = (text for text in coarse.warnings if "get no weight" in text)
+    resolution = int(re.search(r"choose a resolution of (\d+)", warning)[1])
+    assert 8 < resolution < 128
+    fine = bind(rig, resolution)
+    assert fine.weights.any(axis=0).all()
+    assert not any("get no weight" in text for text in fine.warnings)
 
 
 def test_characters_side_by_side_are_bound_as_if_alone():

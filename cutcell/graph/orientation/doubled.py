@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.closed_parts import label
 from ...geometry.edges import find_edges
-from ...geometry.triangles import normals
+from ...geometry.triangles import label_components, normals
 from .patches import NONE
 
 OPEN = 0.5
@@ -41,7 +40,7 @@ def find_reversed(
     if not is_pair.any():
         return is_reversed
     first, second = chosen[order[is_pair[which[order]]]].reshape(-1, 2).T
-    patch = label(len(vertices), faces[first][:, :2], faces[first][:, 1:])[faces[first, 0]]
+    patch = label_components(faces[first], len(vertices))[faces[first, 0]]
     areas = normals(vertices[faces[first]])
     total = np.bincount(patch, np.linalg.norm(areas, axis=1))
     sums = np.stack([np.bincount(patch, column) for column in areas.T], axis=1)

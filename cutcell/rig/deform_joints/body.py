@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...geometry.triangles import normals
+from ...geometry.triangles import label_components, normals
 from ..mesh import TriangleMesh
 
 SPACING = 0.02
@@ -25,8 +23,6 @@ BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
 MAX_SAMPLES = 10_000_000
 """Of large triangles in one place there may be any number: all are then cut less small."""
-SAMPLES_AT_ONCE = 500_000
-"""Before they are merged."""
 
 
 class Body:
@@ -81,9 +77,7 @@ def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float6
     """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out."""
     grid = np.rint(vertices * WELD).astype(np.int64) @ [1 << 42, 1 << 21, 1]
     welded = np.unique(grid, return_inverse=True)[1][faces]
-    ends = welded[:, :2].ravel(), welded[:, 1:].ravel()
-    links = coo_matrix((np.ones(len(ends[0]), bool), ends), (len(vertices), len(vertices)))
-    part = connected_components(links, directed=False)[1][welded[:, 0]]
+    part = label_components(welded, len(vertices))[welded[:, 0]]
     corners = vertices[faces]
     sums = np.stack([np.bincount(part, x) for x in corners.mean(axis=1).T], axis=1)
     middles = sums / np.maximum(np.bincount(part), 1)[:, None]
@@ -103,7 +97,7 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     excess = max(1, np.sqrt((splits**2).sum() / MAX_SAMPLES))
     splits = np.maximum(splits / excess, 1).astype(int)
     order = np.argsort(splits, kind="stable")
-    block = np.cumsum(splits[order] ** 2) // SAMPLES_AT_ONCE
+    block = np.cumsum(splits[order] ** 2) // (BLOCK // 4)
     sums = np.empty((0, 7))  # of each cell: the sums of its points and areas, and their number
     for some in np.split(order, np.flatnonzero(np.diff(block)) + 1):
         sums = np.concatenate([sums, _cut(corners[some], splits[some])])

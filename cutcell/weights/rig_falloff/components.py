@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...geodesics import Bones
 from ...geometry.sorting import sort_by_group
@@ -21,15 +19,6 @@ SMALL = 0.25
 """Maximum size of rigid accessories and components of one joint, as part of the longest side."""
 INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
-
-
-def label_components(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the connected component of each of `count` welded vertices, numbered from 0."""
-    a, b, c = faces.T
-    ends = np.concatenate([a, a]), np.concatenate([b, c])
-    graph = coo_array((np.ones(2 * len(faces), np.bool_), ends), shape=(count, count))
-    component: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return component
 
 
 def longest_sides(points: NDArray[np.float64], component: NDArray[np.int32]) -> NDArray[np.float64]:

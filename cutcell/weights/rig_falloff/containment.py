@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
+from ...geometry.triangles import face_edges
 from ...rig import Skeleton
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
@@ -69,7 +70,8 @@ def _owned(
     chosen &= longest_sides(surface.points, surface.component) <= SMALL
     if skeleton is None or not chosen.any() or areas.max() < BODY * areas.sum():
         return np.zeros_like(starts)
-    chosen[surface.component[_open_edges(surface.faces)]] = False
+    edges, uses = np.unique(face_edges(surface.faces), axis=0, return_counts=True)
+    chosen[surface.component[edges[uses == 1, 0]]] = False  # open ones
     is_last = (skeleton.subtree & skeleton.deform).sum(axis=1) <= 1
     owned = starts & chosen[:, None] & is_last
     elsewhere = np.where(~starts & chosen[:, None], containment, 0).max(axis=0)
@@ -77,13 +79,6 @@ def _owned(
     if not (skeleton.deform & ~owned.any(axis=0)).any():
         owned[:] = False  # no other joint can take the rest
     return owned
-
-
-def _open_edges(faces: NDArray[np.int32]) -> NDArray[np.intp]:
-    """Return one vertex of each edge that only one face has."""
-    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
-    key, count = np.unique(edges[:, 0] << 32 | edges[:, 1], return_counts=True)
-    return key[count == 1] >> 32
 
 
 def cross_component_penalty(

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,7 +83,10 @@ def test_the_skeleton_may_be_bytes_too(contents):
     ("source", "message"),
     [
         ("https://example.org/a.glb", "https://example.org/a.glb is an address, not a file"),
-        ("s3://example/a.glb", "is an address, not a file"),
+        (Path("s3://example/a.glb"), "s3://example/a.glb is an address, not a file"),
+        ("a" * 300 + ".glb", "cannot be read"),
+        ("a\0.glb", "cannot be read"),
+        ("/dev/fd/987", "/dev/fd/987: "),
         (io.StringIO("v 0 0 0"), "is open as text"),
         (b"", "bytes: the file is empty"),
         (b"a letter", '"" cannot be read'),

@@ -141,6 +141,9 @@ def test_other_kinds_of_files(tmp_path):
     (tmp_path / "a.blend").write_bytes(b"BLENDER-v300")
     with pytest.raises(F, match=r'a\.blend: "\.blend" cannot be read; give GLB, glTF, VRM, FBX'):
         cutcell.load(tmp_path / "a.blend")
+    (tmp_path / "a.ma").write_text("//Maya ASCII 2020 scene")
+    with pytest.raises(F, match="from Maya: export as FBX"):
+        cutcell.load(tmp_path / "a.ma")
     (tmp_path / "a.json").write_text("{}")
     with pytest.raises(F, match=r"a\.json: is not a mesh; give the mesh"):
         cutcell.load(tmp_path / "a.json")

@@ -274,7 +274,7 @@ def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
 def test_samples_in_blocks_are_those_of_the_whole(monkeypatch):
     mesh = TriangleMesh(*meshes.torus())
     whole = Body(mesh)
-    monkeypatch.setattr(body, "SAMPLES_AT_ONCE", 1000)
+    monkeypatch.setattr(body, "BLOCK", 4000)
     blocks = Body(mesh)
     assert_allclose(blocks.points, whole.points, atol=1e-12)
     points = np.random.default_rng(0).random((50, 3))
