@@ -39,7 +39,7 @@ class BoundSkin:
     """The joints of a skin, as they were bound and as their nodes are."""
 
     inverse: NDArray[np.float64]
-    """(j, 4, 4): inverse bind matrices, zeros where there is none; `mend` replaces some."""
+    """(j, 4, 4): inverse bind matrices, NaN where there is none; `mend` replaces some."""
     shares: NDArray[np.float64]  # (j,): the sum of the vertices' weights on each joint
     world: NDArray[np.float64]  # (j, 4, 4): of the joints' nodes
     relative: NDArray[np.float64]
@@ -67,7 +67,7 @@ class BoundSkin:
         distance = np.linalg.norm(self.frames[:, :3, 3], axis=1)
         self.is_at_origin = self.is_solvable & (distance <= ORIGIN * size)
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
-        self.is_held = (self.shares > 0) & self.inverse.any(axis=(1, 2))
+        self.is_held = (self.shares > 0) & ~np.isnan(self.inverse).all(axis=(1, 2))
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
         shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
         trusted = self.is_held & shows

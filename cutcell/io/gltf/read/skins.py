@@ -129,7 +129,7 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
     # Several joints that all have the identity have no matrices, as far as glTF goes.
     if len(joints) > 1 and np.array_equal(inverse, same[: len(inverse)]):
         return same, False
-    return np.concatenate([inverse, 0 * same[len(inverse) :]]), True
+    return np.concatenate([inverse, np.nan * same[len(inverse) :]]), True
 
 
 def check_unused(document: Document, bind: Bind) -> None:
