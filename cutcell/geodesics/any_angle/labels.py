@@ -43,7 +43,7 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
     """
     make = (
         np.recarray if vars(config)["DISABLE_JIT"] else np.empty
-    )  # whose entries have no attributes
+    )  # without attributes
     labels = make(nodes * each, LABEL)
     labels[:] = np.inf, NO_JOINT, LOOSE, 0
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
