@@ -274,10 +274,7 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
 
 
 def layered_method(options: Mapping[str, Any], edits: Edits | None) -> tuple[Method, int | None]:
-    """Return the method that is stored with edits, with other options of the command line.
-
-    Also returns the resolution if either has one.
-    """
+    """Return the method of edits and of options that replace it, and the resolution of either."""
     chosen = {name: value for name, value in options.items() if value is not None}
     stored = {} if edits is None or "method" in chosen else edits.method
     stored = {name: "all" if value is None else value for name, value in stored.items()} | chosen

@@ -73,8 +73,7 @@ def refine_weights(
         An option is out of range, the rig does not allow it, or the weights have another shape.
     """
     layers = refinement(rig, smoothing, symmetric, locked)
-    shape = len(rig.mesh.vertices), len(rig.skeleton.joints)
-    if np.shape(weights) != shape:
+    if np.shape(weights) != (shape := (len(rig.mesh.vertices), len(rig.skeleton.joints))):
         raise WeightsError(f"weights has the shape {np.shape(weights)}, expected {shape}")
     return apply_layers(weights, layers, RigSources(rig, method_of(method, **options)))
 

@@ -41,9 +41,7 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
 
     A parent is the label of the node where the path bends last (Theta*), or ~bone.
     """
-    make = (
-        np.recarray if vars(config)["DISABLE_JIT"] else np.empty
-    )  # whose entries have no attributes
+    make = np.recarray if vars(config)["DISABLE_JIT"] else np.empty  # without attributes
     labels = make(nodes * each, LABEL)
     labels[:] = np.inf, NO_JOINT, LOOSE, 0
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
