@@ -172,7 +172,9 @@ def _part_choices(session: Session, finding: Finding) -> list[Any]:
     )
     for (vertex, nearest), empty, text in [*parts][:MAX_DETAILS]:
         contents: dict[str, Content] = {"with the body it touches": Attached()}
-        for joint, note in ((empty, ", empty so far"), (nearest, "")):
+        notes = {empty: ", empty so far"}
+        notes.setdefault(nearest, "")
+        for joint, note in notes.items():
             if joint >= 0:
                 title = f"rigid to {ui.joint_title(rig, joint)}{note}"
                 contents[title] = Filled({rig.skeleton.names[joint]: 1.0})
