@@ -71,7 +71,8 @@ def _findings(state: Any) -> list[Any]:
     """Return the findings below a heading for each severity, and last what is done."""
     if state.diagnosis is None:
         return []
-    groups: dict[str, list[Finding]] = {f"{name}s": [] for name in SEVERITIES} | {"Done": []}
+    titles = (*(f"{severity}s" for severity in SEVERITIES), "Done")
+    groups: dict[str, list[Finding]] = {title: [] for title in titles}
     for one in state.diagnosis.findings:
         groups[f"{one.severity}s" if one in state.open_findings else "Done"].append(one)
     return [
