@@ -84,8 +84,10 @@ def _findings(state: Any) -> list[Any]:
 
 def _exported(state: Any) -> list[Any]:
     """Return the findings about the weights that an export contains."""
-    if state.export_diagnosis is None:
-        lines: list[Any] = [_line("Checking the weights ...")]
+    if state.edits.base == "file" and not state.edits.layers:
+        lines: list[Any] = [_line("The same as in the file.")]
+    elif state.export_diagnosis is None:
+        lines = [_line("Checking the weights ...")]
     else:
         findings = state.export_diagnosis.findings
         lines = [_entry(one, EXPORT + one.code) for one in findings
