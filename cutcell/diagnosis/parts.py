@@ -14,6 +14,7 @@ from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
 from ..rig.deform_joints.conventions import kinds_by_name
+from ..rig.names import words
 from ..runtime.display import count, share
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
 from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
@@ -250,6 +251,7 @@ def _empty_joint(subject: Subject, part: NDArray[np.intp]) -> int:
     inside = ((skeleton.joints >= low - room) & (skeleton.joints <= high + room)).all(axis=1)
     kinds = np.array([kind for kind, _ in kinds_by_name(skeleton.names)])
     is_control = np.isin(kinds, ["controls", "roots", "ends"])
+    is_control |= ["ik" in words(name) for name in skeleton.names]
     empty = np.flatnonzero(inside & ~is_control & ~subject.weights.any(axis=0))
     away = cKDTree(points).query(skeleton.joints[empty])[0]
     return int(empty[away.argmin()]) if len(empty) else -1

@@ -92,3 +92,8 @@ def test_a_pair_of_joints_is_changed_undone_and_renamed(mapped, loop):
     assert state.edits.partners == {}
     set_partner(mapped, 1)
     assert mirror_of(mapped).joint[state.joint] == -1
+
+
+def test_before_a_character_is_there_no_pairs_are(session):
+    (rows,) = draw(session, PAIRS).select(Rows)
+    assert rows.rows == []

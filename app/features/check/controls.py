@@ -71,7 +71,8 @@ def _findings(state: Any) -> list[Any]:
     """Return the findings below a heading for each severity, and last what is done."""
     if state.diagnosis is None:
         return []
-    groups: dict[str, list[Finding]] = {f"{name}s": [] for name in SEVERITIES} | {"Done": []}
+    titles = (*(f"{severity}s" for severity in SEVERITIES), "Done")
+    groups: dict[str, list[Finding]] = {title: [] for title in titles}
     for one in state.diagnosis.findings:
         groups[f"{one.severity}s" if one in state.open_findings else "Done"].append(one)
     return [
@@ -83,8 +84,10 @@ def _findings(state: Any) -> list[Any]:
 
 def _exported(state: Any) -> list[Any]:
     """Return the findings about the weights that an export contains."""
-    if state.export_diagnosis is None:
-        lines: list[Any] = [_line("Checking the weights ...")]
+    if state.edits.base == "file" and not state.edits.layers:
+        lines: list[Any] = [_line("The same as in the file.")]
+    elif state.export_diagnosis is None:
+        lines = [_line("Checking the weights ...")]
     else:
         findings = state.export_diagnosis.findings
         lines = [_entry(one, EXPORT + one.code) for one in findings
@@ -172,7 +175,9 @@ def _part_choices(session: Session, finding: Finding) -> list[Any]:
     )
     for (vertex, nearest), empty, text in [*parts][:MAX_DETAILS]:
         contents: dict[str, Content] = {"with the body it touches": Attached()}
-        for joint, note in ((empty, ", empty so far"), (nearest, "")):
+        notes = {empty: ", empty so far"}
+        notes.setdefault(nearest, "")
+        for joint, note in notes.items():
             if joint >= 0:
                 title = f"rigid to {ui.joint_title(rig, joint)}{note}"
                 contents[title] = Filled({rig.skeleton.names[joint]: 1.0})

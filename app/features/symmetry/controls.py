@@ -37,7 +37,7 @@ def about(state: Any) -> str:
 
 def _pairs(state: Any) -> list[tuple[int, int, str]]:
     """Return the joints of each pair, and what pairs them; -1 for the partner of one alone."""
-    mirror: Mirror | None = mirror_of(state)
+    mirror = _mirror(state)
     if mirror is None:
         return []
     joints, deform = (
@@ -94,8 +94,8 @@ def _label(state: Any) -> str:
     return f"Partner of {ui.joint_title(state.rig, state.joint)}" if ui.has_joint(state) else ""
 
 
-def _is_mirrored(state: Any) -> bool:
-    return state.own is not None and not state.bare and mirror_of(state) is not None
+def _mirror(state: Any) -> Mirror | None:
+    return None if state.own is None or state.bare else mirror_of(state)
 
 
 SYMMETRY = ui.caption(about, visible=lambda state: is_wanted(state))
@@ -111,5 +111,5 @@ PAIRS = ui.folded(
         _label, lambda state: [AUTOMATIC, NOBODY, *short_names(_names(state))], _partner,
         set_partner, searchable=True, margin=(16, 0, 4, 0),
     ),
-    visible=_is_mirrored,
+    visible=lambda state: _mirror(state) is not None,
 )  # fmt: skip

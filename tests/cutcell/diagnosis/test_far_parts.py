@@ -78,7 +78,7 @@ def test_an_empty_joint_in_a_part_is_named_but_no_control():
     rig, _ = with_part(at, 1, bone=[at, np.add(at, [0.5, 0, 0])])
     names, deform = list(rig.skeleton.names), np.ones(len(rig.skeleton.names), bool)
     deform[-2:] = False
-    for name, expected in (("prop", names.index("blade")), ("ik_ctrl", -1)):
+    for name, expected in (("prop", names.index("blade")), ("ik_ctrl", -1), ("handIK", -1)):
         names[-2] = name
         skeleton = replace(rig.skeleton, names=names, deform=deform)
         finding = cutcell.diagnose(replace(rig, skeleton=skeleton), 24, only_weights=True)
