@@ -80,11 +80,10 @@ def publish(session: Session) -> None:
     """Send the address, and whether undo and redo are possible, to the view if changed."""
     if session.state.rig is None:
         return
-    text, step = query(session), session.state.lesson_step
-    is_of_step = step is None or step.shows(session.state.panel)
+    text, step, panel = query(session), session.state.lesson_step, session.state.panel
     message = {
         "address": "?" + text,
-        "link": "?" + (text if is_of_step else OF_STEP.sub("", text)),
+        "link": "?" + (text if step is None or step.shows(panel) else OF_STEP.sub("", text)),
         "able": [session.history.can_undo, session.history.can_redo],
     }
     if {name: session.view.last_sent(name) for name in message} != message:
