@@ -59,9 +59,6 @@ def to_query(
     """
     rig = state.rig
     plain = {n: p.default for n, p in simple(state).items() if n != "panel"}
-    step = state.lesson_step
-    is_on_step = step is not None and step.shows(state.panel)  # else the view is no longer its
-    answer = state.answers.get(state.step) if is_on_step else None
     angles = {j: ",".join(f"{a:g}" for a in t) for j, t in state.turns.items() if any(t)}
     values = {
         "rig": state.demo or (f"~{upload_key}" if upload_key else None),
@@ -77,8 +74,8 @@ def to_query(
         "settled": ",".join(state.settled) or None,
         "turns": ";".join(f"{j}:{text}" for j, text in angles.items()) or None,
         "edits": edits or None,
-        "step": state.step + 1 if is_on_step else None,
-        "answer": None if answer is None else _text(answer),
+        "step": state.step + 1 if state.step >= 0 else None,
+        "answer": None if state.step not in state.answers else _text(state.answers[state.step]),
         "stage": 1 if state.staged else None,
         "camera": None if camera is None else ",".join(f"{x:.4g}" for x in camera),
     }

@@ -1,5 +1,6 @@
 """Undo and redo of choices, and the address of the present ones."""
 
+import re
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,7 @@ from .address import NOTED, simple, snapshot, to_query
 from .history import History
 from .session import Session
 
+OF_STEP = re.compile(r"&(?:step|answer|stage)=[^&]*")
 RESULT = ("rig", "own", "repair")
 """Changes of the result besides the choices: other joints that deform, repaired faces."""
 
@@ -78,8 +80,10 @@ def publish(session: Session) -> None:
     """Send the address, and whether undo and redo are possible, to the view if changed."""
     if session.state.rig is None:
         return
+    text, step, panel = query(session), session.state.lesson_step, session.state.panel
     message = {
-        "address": "?" + query(session),
+        "address": "?" + text,
+        "link": "?" + (text if step is None or step.shows(panel) else OF_STEP.sub("", text)),
         "able": [session.history.can_undo, session.history.can_redo],
     }
     if {name: session.view.last_sent(name) for name in message} != message:

@@ -10,7 +10,6 @@ const SLIM = 700  // a window less wide than this shows a part
 const PART = 0.3  // of the width, above the mark and below
 
 const clamped = (x, low, high) => Math.min(Math.max(x, low), high)
-const away = (winding) => Math.abs(winding - NEAR_HOLE)
 const signed = (step) => step > 0 ? "+1" : "−1"
 
 export class Rays {
@@ -31,7 +30,8 @@ export class Rays {
   // Begins in the longest run where faces are reversed; else near a hole, where there is one.
   findNotable() {
     const all = this.ways[this.way].flatMap((ray, index) => runs(ray).map(([low, high, winding]) =>
-      ({index, at: (low + high) / 2, rank: winding < REVERSED ? high - low : -away(winding)})))
+      ({index, at: (low + high) / 2,
+        rank: winding < REVERSED ? high - low : -Math.abs(winding - NEAR_HOLE)})))
     const best = all.reduce((one, other) => other.rank > one.rank ? other : one)
     if (best.rank > -NEAR_HOLE / 2) { this.choose(best.index, best.at) }
   }

@@ -99,8 +99,7 @@ export function flatScene(host) {
     root.classList.toggle("empty", !now.data)
     if (!now.data) { mode = null; say.textContent = "Computing the section …"; return }
     if (isNew) {
-      const {size} = now.data
-      scene.length = (length) => lengthText(size * length)
+      scene.length = (length) => lengthText(now.data.size * length)
       mode = now.data.rays.length ? new MODES[now.mode](scene) : null
     }
     if (isDone) { mode?.reveal?.() }

@@ -536,8 +536,10 @@ def test_a_link_names_the_step_only_while_its_panels_are_shown(session, loop):
     state = session.state
     for panel, is_shown in (("graph", True), ("learn", True), ("pose", False), ("distance", True)):
         state.panel = panel
-        address = session.view.last_sent("address")
-        assert ("step=" in address, "answer=" in address) == (is_shown, is_shown), panel
+        link, address = session.view.last_sent("link"), session.view.last_sent("address")
+        assert ("step=" in link, "answer=" in link) == (is_shown, is_shown), panel
+        assert f"panel={panel}" in link
+        assert "step=" in address, "the browser's Back leads to steps"
 
 
 @pytest.mark.parametrize("step", LESSON.steps, ids=lambda step: step.title)

@@ -14,21 +14,16 @@ DROPPED = re.compile(r"(?:^|&)(?:step|answer|stage|rig=~)[^&]*")
 
 def save_view(session: Session) -> None:
     """Send the present view to the browser as the file of a step."""
-    if session.state.rig is not None:
-        session.view.offer("01-new-step.md", written(this_view(session)).encode())
+    session.view.offer("01-new-step.md", written(this_view(session)).encode())
 
 
 def this_view(session: Session) -> Step:
     """Return the present view as a step of a lesson."""
-    playing = "&playing=1" if session.state.playing or session.state.animating else ""
-    return Step(
-        title="New step",
-        question="What do you expect?",
-        address=DROPPED.sub("", query(session, always_camera=True)).lstrip("&") + playing,
-        answer=Answer("choice", options=["Yes", "No"], expected="Yes"),
-        text="Explain what the picture shows.",
-        sentence="One sentence that remains.",
-    )
+    address = DROPPED.sub("", query(session, always_camera=True)).lstrip("&")
+    address += "&playing=1" if session.state.playing or session.state.animating else ""
+    answer = Answer("choice", options=["Yes", "No"], expected="Yes")
+    text, rest = "Explain what the picture shows.", "One sentence that remains."
+    return Step("New step", "What do you expect?", address, answer, text=text, sentence=rest)
 
 
 def written(step: Step) -> str:
