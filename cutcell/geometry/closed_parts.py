@@ -29,8 +29,9 @@ def separate_closed_parts(
     partner = _pair_around_edges(vertices, corners, partner, is_whole)
     start, end, is_paired = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), partner != NONE
     n, k, used = len(index), len(vertices), np.unique(start[is_whole])
-    across = start[is_paired], start[partner[is_paired]]
-    links = np.concatenate([np.stack([start, end], axis=1), np.stack(across, axis=1)])
+    seam = np.flatnonzero(is_paired & (start != end[partner]))
+    seams = np.stack([start[seam], start[partner[seam]]], axis=1)
+    links = np.concatenate([faces[:, :2], faces[:, 1:], seams])
     part = label_components(links, n)
     is_open = np.zeros(n + k, np.bool_)
     is_open[part[start[is_whole & ~is_paired]]] = True

@@ -190,6 +190,7 @@ def _slice(state: State, memo: Memo) -> Description:
         "index": index,
         "winding_threshold": state.winding_threshold,
         "orient": state.orient,
+        "fill": state.connectivity != 6,
     }
 
     def cast(name: str, **libraries: str) -> RaySlice:
