@@ -8,13 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
+from ..graph.lattice import TIE
 from ..method import LEAVES
 from ..rig import Skeleton
 from ..rig.checks import check_choice
-
-TIE = 1e-9
-"""Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
-a lattice cell has eight nearest nodes, and rounding must not choose among them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +139,8 @@ def bone_samples(
     if graph.connectivity == "any":
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(bones.end - bones.start, axis=1)
-        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+        cells = (length - TIE) * graph.lattice.resolution
+        counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]
     share = np.where(counts > 1, 0.0, 0.5)[bone] + number / np.maximum(counts - 1, 1)[bone]

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import MeshError
 from ..graph import CutCellGraph
+from ..graph.lattice import TIE
 
 LEAF_SIZE = 32
 """There are a few hundred points and many nodes, so that a shallow tree takes the least time."""
@@ -44,15 +45,13 @@ class NodeTree:
             raise MeshError("every triangle of the mesh has collapsed into a point")
         return cls(graph.nodes, graph.connected, graph.lattice.resolution)
 
-    def nearest(
-        self, points: NDArray[np.float64], tie: float
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Find the nearest nodes of each point: all that are equally near up to rounding.
+    def nearest(self, points: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Find the nearest nodes of each point: the eight around the middle of a cell are equal.
 
         Shapes: points (p, 3); returns point, node (f,).
         """
         distance, _ = self._tree.query(points)
-        nearest = self._tree.query_ball_point(points, distance * (1 + tie), return_sorted=True)
+        nearest = self._tree.query_ball_point(points, distance + TIE, return_sorted=True)
         point = np.repeat(np.arange(len(points)), [len(nodes) for nodes in nearest])
         return point, self._number[[node for nodes in nearest for node in nodes]]
 

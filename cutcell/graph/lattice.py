@@ -12,6 +12,11 @@ from ..method import check_resolution
 from ..rig import TriangleMesh
 from ..rig.checks import LARGEST, check_positions
 
+TIE = 1e-9
+"""Part of the cube's side: coordinates and distances in the cube that differ by no more are equal.
+This is far above what rounding makes of equal ones, which must not choose among them, and a
+millionth of the smallest lattice cell."""
+
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
@@ -61,6 +66,19 @@ class Lattice:
         # very same numbers.
         extent = (high - low) / size
         return cls(resolution, low, size, (1 - extent) / 2, float(np.linalg.norm(extent)))
+
+    def order(self, *points: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Sort rows of points (n, 3) in the cube, by the first points, then by the second...
+
+        Coordinates along the mesh's longest side come first: the order turns with the mesh.
+        """
+        columns = np.concatenate([p[:, self.axes] for p in points], axis=1)
+        return np.lexsort(np.rint(columns.T[::-1] / TIE))
+
+    @property
+    def axes(self) -> NDArray[np.intp]:
+        """The axes by the mesh's size along them, the longest first."""
+        return np.argsort(np.rint(self.offset / TIE), kind="stable")
 
     def to_unit(self, points: ArrayLike) -> NDArray[np.float64]:
         """Bring points (..., 3) from the file's units into the unit cube."""

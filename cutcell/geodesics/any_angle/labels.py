@@ -6,9 +6,9 @@ rest and are in a separate array: those of a node fit into one cache line.
 
 The queue has buckets (Dial 1969). A bucket is a doubly linked list through the labels themselves:
 a label is inserted and removed without a search, and with two integers of memory. Buckets are
-served in order, and are so narrow that the order within one does not matter. The first label of
-each bucket is in an array `head`, shape (buckets,), int32; `scale` is the number of buckets a unit
-of distance. The last bucket holds everything beyond, until `move_on`.
+served in order, and the labels of one by distance; there are few in each. The first label of each
+bucket is in an array `head`, shape (buckets,), int32; `scale` is the number of buckets a unit of
+distance. The last bucket holds everything beyond, in any order, until `move_on`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...graph.lattice import TIE
 from ...runtime.compiled import compiled
 
 NO_JOINT, NO_PARENT = -1, -(2**31)
@@ -47,14 +48,28 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
 
 @compiled(inline="always")
 def find_room(labels, each, v, joint):
-    """Return the label of a joint at node v or, if there is none, the farthest label."""
-    existing, farthest, most = -1, v * each, 0.0
+    """Return the label of a joint at node v or, if there is none, the farthest label.
+
+    Of equally far ones, that of the last joint.
+    """
+    existing, farthest = -1, v * each
     for label in range(v * each, v * each + each):
         existing = label if labels[label].joint == joint else existing
-        distance = labels[label].distance
-        farthest = label if distance > most else farthest
-        most = max(distance, most)
+        farther = labels[label].distance - labels[farthest].distance
+        is_last = labels[label].joint > labels[farthest].joint
+        farthest = label if farther > (-TIE if is_last else TIE) else farthest
     return existing if existing >= 0 else farthest
+
+
+@compiled(inline="always")
+def limit_of(labels, slot, joint):
+    """Return the distance that a new label of a joint must be below to replace another joint's.
+
+    Of equally near joints the first one stays.
+    """
+    if labels[slot].joint == joint:
+        return labels[slot].distance
+    return labels[slot].distance + (TIE if joint < labels[slot].joint else -TIE)
 
 
 @compiled(inline="always")
@@ -75,10 +90,18 @@ def bucket_of(head, scale, distance):
 @compiled(inline="always")
 def join(head, labels, bucket, label):
     """Insert a label that is in no bucket."""
-    follower = head[bucket]
-    head[bucket], labels[label].after, labels[label].before = label, follower, ~bucket
-    if follower != END:
-        labels[follower].before = label
+    before, after = ~bucket, head[bucket]
+    if bucket < len(head) - 1:
+        distance = labels[label].distance
+        while after != END and labels[after].distance < distance:
+            before, after = after, labels[after].after
+    labels[label].after, labels[label].before = after, before
+    if before >= 0:
+        labels[before].after = label
+    else:
+        head[bucket] = label
+    if after != END:
+        labels[after].before = label
 
 
 @compiled(inline="always")

@@ -22,10 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...graph import CutCellGraph
+from ...graph.lattice import TIE
 from ...runtime.compiled import no_refcount
 from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads, parts, threads
-from ..bones import TIE, Bones, Sources
+from ..bones import Bones, Sources
 from .contraction import Contraction
 from .labels import (
     END,
@@ -36,9 +37,10 @@ from .labels import (
     has_parent,
     join,
     leave,
+    limit_of,
     move_on,
 )
-from .line_of_sight import body_of, has_line_of_sight, parent_position, straight
+from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
 from .wavefront import Ranking, Wavefront, begin, enqueue, partition_sources, rank_bones
 
 NEAR = 2
@@ -72,7 +74,7 @@ def any_angle_paths(
 
     Shapes: targets (t,), least (K,); returns (j, t).
     """
-    ranking = _ranked(contraction, bones, sources)
+    ranking = _ranked(graph, contraction, bones, sources)
     count = len(ranking.joints)
     if nearest is not None and least is not None:
         groups = [np.ones(count, np.bool_)]
@@ -113,7 +115,7 @@ def least_distances(
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute the distance of the nearest joint to each kept node, shape (K,)."""
-    ranking = _ranked(contraction, bones, sources)
+    ranking = _ranked(graph, contraction, bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(contraction.node), every, 1)
     body = body_of(graph, contraction)
@@ -121,9 +123,11 @@ def least_distances(
     return front.least
 
 
-def _ranked(contraction: Contraction, bones: Bones, sources: Sources) -> Ranking:
+def _ranked(
+    graph: CutCellGraph, contraction: Contraction, bones: Bones, sources: Sources
+) -> Ranking:
     number = contraction.number[sources.node]
-    return rank_bones(bones, Sources(number, sources.bone, sources.distance))
+    return rank_bones(graph, bones, Sources(number, sources.bone, sources.distance))
 
 
 def _propagate(
@@ -161,7 +165,7 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
 
     A contracted node has line of sight to the parents of its representative.
     """
-    _, _, _, places, (_, node, number) = body
+    _, _, _, places, (_, node, number), _ = body
     for t in range(len(targets)):
         target, v = targets[t], number[targets[t]]
         position = nodes[target, 0], nodes[target, 1], nodes[target, 2]
@@ -203,7 +207,7 @@ def _settle(
     Returns the bucket to continue with, and how many labels have been settled.
     """
     indptr, indices = adjacency
-    resolution, first_point, first_surface, nodes, _ = body
+    resolution, first_point, first_surface, nodes, _, _ = body
     settled = 0
     while bucket < len(head) - 1 and settled < most:
         while head[bucket] != END and settled < most:
@@ -212,6 +216,7 @@ def _settle(
             leave(head, labels, label)
             labels[label].after = SETTLED
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
+            final = labels[label].distance - TIE
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
             # Most neighbours have this parent already. The others are listed without a branch,
             # which would be mispredicted.
@@ -225,10 +230,9 @@ def _settle(
                 slot = find_room(labels, each, v, joint)
                 if labels[slot].after == SETTLED:
                     continue
-                # Equally near joints: the first by position stays.
-                limit = labels[slot].distance
-                if labels[slot].joint != joint:
-                    limit *= 1 + TIE if joint < labels[slot].joint else 1 - TIE
+                limit, other = limit_of(labels, slot, joint), parents[slot]
+                is_same = labels[slot].joint == joint
+                limit += TIE if is_same else 0.0
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
@@ -240,16 +244,19 @@ def _settle(
                 if u < first_point:
                     sees = False
                 elif v < first_point:
-                    sees = step * resolution < NEAR
+                    sees = step * resolution < NEAR - TIE
                 elif v >= first_surface:
                     sees = u < first_surface
                 else:
                     sees = has_line_of_sight(
-                        body, parents, each, u, v, position, grandparent, start
+                        body, labels, parents, each, u, v, position, grandparent, start, final
                     )
                 if not sees:
                     reached, parent = labels[label].distance + step, label
                     if reached >= limit:
+                        continue
+                if is_same and reached >= limit - 2 * TIE:
+                    if not is_preferred(body, bones, each, labels, parent, other, position):
                         continue
                 leave(head, labels, slot)
                 labels[slot].joint, parents[slot] = joint, parent

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ...graph import CutCellGraph
+from ...graph.lattice import TIE
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
-from .labels import NO_JOINT, bucket_of, find_room, join, no_labels
+from .labels import NO_JOINT, bucket_of, find_room, join, limit_of, no_labels
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +60,9 @@ class Wavefront:
     least: NDArray[np.float64]
 
 
-def rank_bones(bones: Bones, sources: Sources) -> Ranking:
+def rank_bones(graph: CutCellGraph, bones: Bones, sources: Sources) -> Ranking:
     """Order bones, joints and sources by position."""
-    order = np.lexsort(np.concatenate([bones.start, bones.end], axis=1).T[::-1])
+    order = graph.lattice.order(bones.start, bones.end)
     start, along = bones.start[order], (bones.end - bones.start)[order]
     squared = (along**2).sum(axis=1)
     inverse = np.divide(1, squared, out=np.zeros(len(order)), where=squared > 0)
@@ -84,7 +86,7 @@ def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     Each joint in turn goes to the group that its nearest predecessor is not in. A single joint is
     one group.
     """
-    distance = cdist(places, places)
+    distance = np.rint(cdist(places, places) / TIE)
     odd = np.zeros(len(places), np.bool_)
     for k in range(1, len(places)):
         odd[k] = not odd[distance[k, :k].argmin()]
@@ -116,7 +118,8 @@ def _enter_sources(labels, parents, least, each, group, rank, node, bone, distan
         if not group[joint]:
             continue
         label = find_room(labels, each, node[s], joint)
-        if distance[s] < labels[label].distance:
+        limit = limit_of(labels, label, joint)
+        if distance[s] < (limit - TIE if labels[label].joint == joint else limit):
             labels[label].joint, parents[label] = joint, parent
             labels[label].distance = distance[s]
             least[node[s]] = min(least[node[s]], distance[s])

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...geodesics.bones import TIE
 from ...geodesics.nearest import NodeTree
 from ...graph import CutCellGraph
 from .components import SMALL, longest_sides
@@ -107,7 +106,7 @@ def nearest_on_body(
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points, TIE)
+    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
     node = node[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
     distance = np.linalg.norm(graph.nodes[node] - points, axis=1)
     on_face = graph.faces[graph.triangle[node]]
