@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
-from ..graph.lattice import TIE
 from ..method import LEAVES
 from ..rig import Skeleton
 from ..rig.checks import check_choice

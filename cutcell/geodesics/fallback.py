@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.segments import distance_to_segment
-from ..graph.lattice import TIE
+from ..geometry.vectors import TIE
 from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
 

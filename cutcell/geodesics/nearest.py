@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..errors import MeshError
+from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
-from ..graph.lattice import TIE
 
 LEAF_SIZE = 32
 """There are a few hundred points and many nodes, so that a shallow tree takes the least time."""
@@ -73,5 +73,5 @@ class NodeTree:
 
     def _keys(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the key of the lattice cell of each point (p, 3)."""
-        x, y, z = np.floor(points.T * self._resolution).astype(np.int64)
+        x, y, z = np.floor((points.T + TIE) * self._resolution).astype(np.int64)
         return (x * CELLS_ACROSS + y) * CELLS_ACROSS + z

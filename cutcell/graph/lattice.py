@@ -8,14 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
+from ..geometry.vectors import TIE
 from ..method import check_resolution
 from ..rig import TriangleMesh
 from ..rig.checks import LARGEST, check_positions
-
-TIE = 1e-9
-"""Part of the cube's side: coordinates and distances in the cube that differ by no more are equal.
-This is far above what rounding makes of equal ones, which must not choose among them, and a
-millionth of the smallest lattice cell."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts, threads
 
-EQUAL = 1 + 1e-9
+EQUAL = 1 + TIE
 """Weights that differ by less than this factor are equal. Two bones that meet in a joint weigh the
 same wherever that joint is the nearest point of both, and rounding must not choose."""
 

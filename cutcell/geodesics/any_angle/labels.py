@@ -6,9 +6,9 @@ rest and are in a separate array: those of a node fit into one cache line.
 
 The queue has buckets (Dial 1969). A bucket is a doubly linked list through the labels themselves:
 a label is inserted and removed without a search, and with two integers of memory. Buckets are
-served in order, and the labels of one by distance; there are few in each. The first label of each
-bucket is in an array `head`, shape (buckets,), int32; `scale` is the number of buckets a unit of
-distance. The last bucket holds everything beyond, in any order, until `move_on`.
+served in order. Each is sorted when its turn comes; there are few labels in it, as it is narrow.
+The first label of each bucket is in an array `head`, shape (buckets,), int32; `scale` is the number
+of buckets a unit of distance. The last bucket holds everything beyond, until `move_on`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...graph.lattice import TIE
+from ...geometry.vectors import TIE
 from ...runtime.compiled import compiled
 
 NO_JOINT, NO_PARENT = -1, -(2**31)
@@ -90,16 +90,35 @@ def bucket_of(head, scale, distance):
 @compiled(inline="always")
 def join(head, labels, bucket, label):
     """Insert a label that is in no bucket."""
+    _link(head, labels, ~bucket, label, head[bucket])
+
+
+@compiled(inline="always")
+def insert(head, labels, bucket, label):
+    """Insert a label that is in no bucket by its distance into a bucket that is sorted."""
     before, after = ~bucket, head[bucket]
-    if bucket < len(head) - 1:
-        distance = labels[label].distance
-        while after != END and labels[after].distance < distance:
-            before, after = after, labels[after].after
+    while after != END and labels[after].distance < labels[label].distance:
+        before, after = after, labels[after].after
+    _link(head, labels, before, label, after)
+
+
+@compiled(inline="always")
+def sort(head, labels, bucket):
+    """Sort the labels of a bucket by distance."""
+    label, head[bucket] = head[bucket], END
+    while label != END:
+        follower = labels[label].after
+        insert(head, labels, bucket, label)
+        label = follower
+
+
+@compiled(inline="always")
+def _link(head, labels, before, label, after):
     labels[label].after, labels[label].before = after, before
     if before >= 0:
         labels[before].after = label
     else:
-        head[bucket] = label
+        head[~before] = label
     if after != END:
         labels[after].before = label
 

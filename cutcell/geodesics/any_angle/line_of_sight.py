@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...graph.interior import OUTSIDE
-from ...graph.lattice import TIE
 from ...runtime.compiled import compiled, no_refcount
 from .contraction import Contraction
 
@@ -44,7 +44,7 @@ def parent_position(nodes, bones, each, parent, position):
 
 
 @compiled(inline="always")
-def is_preferred(body, bones, each, labels, parent, other, position):
+def is_preferred(body, bones, labels, each, parent, other, position):
     """Return whether a path bends at this parent, if it is as long as by way of another parent.
 
     Preferred is the one that is nearer to the bone, then the first by position.
@@ -110,6 +110,16 @@ def _neighbour(steps, point, direction):
 
     OUTSIDE if no order of the axes leads to it.
     """
+    x, y, z = direction
+    neighbour = _step(steps, _step(steps, _step(steps, point, 0, x), 1, y), 2, z)
+    if neighbour == OUTSIDE and abs(x) + abs(y) + abs(z) > 1:
+        return _by_another_order(steps, point, x, y, z)
+    return neighbour
+
+
+@no_refcount
+def _by_another_order(steps, point, x, y, z):
+    direction = x, y, z
     for first in range(3):
         for turn in range(1, 3):
             neighbour = point

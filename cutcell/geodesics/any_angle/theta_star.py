@@ -21,8 +21,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
-from ...graph.lattice import TIE
 from ...runtime.compiled import no_refcount
 from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads, parts, threads
@@ -35,10 +35,12 @@ from .labels import (
     bucket_of,
     find_room,
     has_parent,
+    insert,
     join,
     leave,
     limit_of,
     move_on,
+    sort,
 )
 from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
 from .wavefront import Ranking, Wavefront, begin, enqueue, partition_sources, rank_bones
@@ -210,6 +212,7 @@ def _settle(
     resolution, first_point, first_surface, nodes, _, _ = body
     settled = 0
     while bucket < len(head) - 1 and settled < most:
+        sort(head, labels, bucket)
         while head[bucket] != END and settled < most:
             settled += 1
             label = head[bucket]
@@ -255,13 +258,17 @@ def _settle(
                     reached, parent = labels[label].distance + step, label
                     if reached >= limit:
                         continue
-                if is_same and reached >= limit - 2 * TIE:
-                    if not is_preferred(body, bones, each, labels, parent, other, position):
-                        continue
+                is_tie = is_same and reached >= limit - 2 * TIE
+                if is_tie and not is_preferred(body, bones, labels, each, parent, other, position):
+                    continue
                 leave(head, labels, slot)
                 labels[slot].joint, parents[slot] = joint, parent
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
-                join(head, labels, max(bucket_of(head, scale, reached - origin), bucket), slot)
+                further = bucket_of(head, scale, reached - origin)
+                if further > bucket:
+                    join(head, labels, further, slot)
+                else:
+                    insert(head, labels, bucket, slot)
         bucket += head[bucket] == END
     return bucket, settled

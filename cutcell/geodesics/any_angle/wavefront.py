@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
-from ...graph.lattice import TIE
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
 from .labels import NO_JOINT, bucket_of, find_room, join, limit_of, no_labels
