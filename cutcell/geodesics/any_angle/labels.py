@@ -23,6 +23,8 @@ NO_JOINT, NO_PARENT = -1, -(2**31)
 """The joint and the parent of an unused label."""
 END, LOOSE, SETTLED = -1, -2, -3
 """Values of `after` other than a label: last of its bucket, in no bucket, settled."""
+SHIFT = 0.3
+"""Of the buckets, whose bounds would else be at whole numbers of cells, where distances tie."""
 
 LABEL = np.dtype(
     [
@@ -84,7 +86,7 @@ def has_parent(parents, each, v, parent):
 @compiled(inline="always")
 def bucket_of(head, scale, distance):
     """Return the bucket of a distance."""
-    return min(int(distance * scale), len(head) - 1)
+    return min(int(distance * scale + SHIFT), len(head) - 1)
 
 
 @compiled(inline="always")
@@ -94,10 +96,10 @@ def join(head, labels, bucket, label):
 
 
 @compiled(inline="always")
-def insert(head, labels, bucket, label):
-    """Insert a label that is in no bucket by its distance into a bucket that is sorted."""
+def insert(head, labels, bucket, label, distance):
+    """Insert a label that is in no bucket, by a distance, into a bucket that is sorted."""
     before, after = ~bucket, head[bucket]
-    while after != END and labels[after].distance < labels[label].distance:
+    while after != END and labels[after].distance < distance:
         before, after = after, labels[after].after
     _link(head, labels, before, label, after)
 
@@ -108,7 +110,7 @@ def sort(head, labels, bucket):
     label, head[bucket] = head[bucket], END
     while label != END:
         follower = labels[label].after
-        insert(head, labels, bucket, label)
+        insert(head, labels, bucket, label, labels[label].distance)
         label = follower
 
 

@@ -14,6 +14,7 @@ from ...graph import CutCellGraph
 from ...graph.interior import OUTSIDE
 from ...runtime.compiled import compiled, no_refcount
 from .contraction import Contraction
+from .labels import SETTLED
 
 
 def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
@@ -73,7 +74,7 @@ def straight(p, q):
 def has_line_of_sight(body, labels, parents, each, u, v, position, parent, origin, limit):
     """Return whether the lattice point v, at `position`, has line of sight to a parent at `origin`.
 
-    Its neighbour u has. Labels with distances below the limit are final.
+    Its neighbour u has. Settled labels with distances below the limit do not depend on ties.
     """
     resolution, first_point, _, _, (steps, node, number), _ = body
     # From the middle of the cell of v, in cells.
@@ -94,7 +95,7 @@ def has_line_of_sight(body, labels, parents, each, u, v, position, parent, origi
                 return True
             for label in range(w * each, w * each + each):
                 if parents[label] == parent and labels[label].distance < limit:
-                    return True
+                    return labels[label].after == SETTLED or _traverse(steps, point, x, y, z)
     return _traverse(steps, point, x, y, z)
 
 

@@ -183,7 +183,7 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
 
 def _leave_out(within: float, near: float, distance: NDArray[np.float64]) -> None:
     """Set distances (j, t) beyond `within` times the least, at least `near`, to infinity."""
-    distance[distance > within * np.maximum(distance.min(axis=0), near)] = np.inf
+    distance[distance > within * np.maximum(distance.min(axis=0), near) + TIE] = np.inf
 
 
 @no_refcount
@@ -210,7 +210,7 @@ def _settle(
     """
     indptr, indices = adjacency
     resolution, first_point, first_surface, nodes, _, _ = body
-    settled = 0
+    settled, time = 0, 0.0
     while bucket < len(head) - 1 and settled < most:
         sort(head, labels, bucket)
         while head[bucket] != END and settled < most:
@@ -219,7 +219,7 @@ def _settle(
             leave(head, labels, label)
             labels[label].after = SETTLED
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
-            final = labels[label].distance - TIE
+            time = max(time, labels[label].distance)
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
             # Most neighbours have this parent already. The others are listed without a branch,
             # which would be mispredicted.
@@ -231,7 +231,9 @@ def _settle(
                 e = ahead[k]
                 v = indices[e]
                 slot = find_room(labels, each, v, joint)
-                if labels[slot].after == SETTLED:
+                # Of labels at equal distances none improves another: any may be settled first.
+                is_tied = abs(labels[slot].distance - time) <= TIE
+                if labels[slot].after == SETTLED or is_tied:
                     continue
                 limit, other = limit_of(labels, slot, joint), parents[slot]
                 is_same = labels[slot].joint == joint
@@ -241,7 +243,7 @@ def _settle(
                 reached, parent = to_grandparent + straight(position, start), grandparent
                 if reached >= limit:
                     continue  # a path by way of u is no shorter
-                if reached > within * max(least[v], ON_BONE / resolution):
+                if reached > within * max(least[v], ON_BONE / resolution) + TIE:
                     continue
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
                 if u < first_point:
@@ -252,7 +254,7 @@ def _settle(
                     sees = u < first_surface
                 else:
                     sees = has_line_of_sight(
-                        body, labels, parents, each, u, v, position, grandparent, start, final
+                        body, labels, parents, each, u, v, position, grandparent, start, time - TIE
                     )
                 if not sees:
                     reached, parent = labels[label].distance + step, label
@@ -265,10 +267,12 @@ def _settle(
                 labels[slot].joint, parents[slot] = joint, parent
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
-                further = bucket_of(head, scale, reached - origin)
+                # One that is nearer than what is settled has its turn after its equals.
+                turn = max(reached, time + 2 * TIE)
+                further = bucket_of(head, scale, turn - origin)
                 if further > bucket:
                     join(head, labels, further, slot)
                 else:
-                    insert(head, labels, bucket, slot)
+                    insert(head, labels, bucket, slot, turn)
         bucket += head[bucket] == END
     return bucket, settled

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-from ...geometry.vectors import TIE
 from ...rig import Skeleton
 from .face import face_parts
 from .probe import BodyProbe
@@ -278,7 +277,7 @@ def _inferred_tree(
     length = np.linalg.norm(away, axis=2)
     air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
     # Whole numbers, whose sums are exact. Coincident joints cost 1, as zero would mean no edge.
-    cost = np.maximum(np.rint(length**HOP * (1 + THROUGH_AIR * air) / TIE), 1)
+    cost = np.maximum(np.rint(length**HOP * (1 + THROUGH_AIR * air) * 1e12), 1)
     before = dijkstra(cost, return_predecessors=True)[1]
     unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
     best, least = -1, np.inf

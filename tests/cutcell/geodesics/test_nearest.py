@@ -20,8 +20,8 @@ def test_nearest_are_those_of_all(resolution, count):
     corners = np.stack(np.meshgrid(*[np.arange(9) / 8] * 3), axis=-1).reshape(-1, 3)
     points = np.concatenate([inside, outside, corners])
     apart = np.where(chosen, cdist(points, nodes), np.inf)
-    expected = np.nonzero(apart <= apart.min(axis=1, keepdims=True) * (1 + 1e-9))
-    point, node = NodeTree(nodes, chosen, resolution).nearest(points, 1e-9)
+    expected = np.nonzero(apart <= apart.min(axis=1, keepdims=True) + 1e-9)
+    point, node = NodeTree(nodes, chosen, resolution).nearest(points)
     assert (np.diff(point) >= 0).all()
     assert set(zip(point, node, strict=True)) == set(zip(*expected, strict=True))
 
