@@ -29,7 +29,7 @@ def test_nearest_are_those_of_all(resolution, count):
 def test_a_crowd_at_one_place_is_found_whole():
     nodes = np.full((100, 3), 0.25)
     grid = NodeTree(nodes, np.ones(100, bool), 64)
-    point, node = grid.nearest(np.array([[0.75, 0.5, 1.5]]), 1e-9)
+    point, node = grid.nearest(np.array([[0.75, 0.5, 1.5]]))
     assert not point.any()
     assert sorted(node) == list(range(100))
 
