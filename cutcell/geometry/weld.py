@@ -46,10 +46,7 @@ def weld(
 
 @compiled
 def _merge(projection, points, tolerance, slack):
-    """Return the first point of each point's group (disjoint sets, Tarjan 1975), shape (n,).
-
-    Also returns the middles of groups at their first points, shape (n, 3).
-    """
+    """Return each point's group's first point (disjoint sets, Tarjan 1975) and, there, middle."""
     count = len(points)
     first = np.arange(count)
     for i in range(count):

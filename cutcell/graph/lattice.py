@@ -64,10 +64,7 @@ class Lattice:
         return cls(resolution, low, size, (1 - extent) / 2, float(np.linalg.norm(extent)))
 
     def order(self, *points: NDArray[np.float64]) -> NDArray[np.intp]:
-        """Sort rows of points (n, 3) in the cube, by the first points, then by the second...
-
-        Coordinates along the mesh's longest side come first: the order turns with the mesh.
-        """
+        """Sort rows of points (n, 3) in the cube, by the mesh's longest side first."""
         columns = np.concatenate([p[:, self.axes] for p in points], axis=1)
         return np.lexsort(np.rint(columns.T[::-1] / TIE))
 

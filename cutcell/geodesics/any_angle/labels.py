@@ -21,11 +21,9 @@ from ...runtime.compiled import compiled
 
 NO_JOINT, NO_PARENT = -1, -(2**31)
 """The joint and the parent of an unused label."""
+FIRST = -np.inf
 END, LOOSE, SETTLED = -1, -2, -3
 """Values of `after` other than a label: last of its bucket, in no bucket, settled."""
-SHIFT = 0.3
-"""Of the buckets, whose bounds would else be at whole numbers of cells, where distances tie."""
-
 LABEL = np.dtype(
     [
         ("distance", np.float64),
@@ -50,10 +48,7 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
 
 @compiled(inline="always")
 def find_room(labels, each, v, joint):
-    """Return the label of a joint at node v or, if there is none, the farthest label.
-
-    Of equally far ones, that of the last joint.
-    """
+    """Return the label of a joint at node v or, if there is none, the last of the farthest."""
     existing, farthest = -1, v * each
     for label in range(v * each, v * each + each):
         existing = label if labels[label].joint == joint else existing
@@ -65,13 +60,8 @@ def find_room(labels, each, v, joint):
 
 @compiled(inline="always")
 def limit_of(labels, slot, joint):
-    """Return the distance that a new label of a joint must be below to replace another joint's.
-
-    Of equally near joints the first one stays.
-    """
-    if labels[slot].joint == joint:
-        return labels[slot].distance
-    return labels[slot].distance + (TIE if joint < labels[slot].joint else -TIE)
+    """Return the distance that a joint's must be below to replace a label: equals go by joint."""
+    return labels[slot].distance + (TIE if joint <= labels[slot].joint else -TIE)
 
 
 @compiled(inline="always")
@@ -85,23 +75,23 @@ def has_parent(parents, each, v, parent):
 
 @compiled(inline="always")
 def bucket_of(head, scale, distance):
-    """Return the bucket of a distance."""
-    return min(int(distance * scale + SHIFT), len(head) - 1)
+    """Return the bucket of a distance. Bounds are not at whole cells, where distances tie."""
+    return min(int(distance * scale + 0.3), len(head) - 1)
 
 
 @compiled(inline="always")
-def join(head, labels, bucket, label):
-    """Insert a label that is in no bucket."""
-    _link(head, labels, ~bucket, label, head[bucket])
-
-
-@compiled(inline="always")
-def insert(head, labels, bucket, label, distance):
-    """Insert a label that is in no bucket, by a distance, into a bucket that is sorted."""
+def join(head, labels, bucket, label, distance=FIRST):
+    """Insert a label that is in no bucket, before the first one that is at least as far."""
     before, after = ~bucket, head[bucket]
     while after != END and labels[after].distance < distance:
         before, after = after, labels[after].after
-    _link(head, labels, before, label, after)
+    labels[label].after, labels[label].before = after, before
+    if before >= 0:
+        labels[before].after = label
+    else:
+        head[bucket] = label
+    if after != END:
+        labels[after].before = label
 
 
 @compiled(inline="always")
@@ -110,19 +100,8 @@ def sort(head, labels, bucket):
     label, head[bucket] = head[bucket], END
     while label != END:
         follower = labels[label].after
-        insert(head, labels, bucket, label, labels[label].distance)
+        join(head, labels, bucket, label, labels[label].distance)
         label = follower
-
-
-@compiled(inline="always")
-def _link(head, labels, before, label, after):
-    labels[label].after, labels[label].before = after, before
-    if before >= 0:
-        labels[before].after = label
-    else:
-        head[~before] = label
-    if after != END:
-        labels[after].before = label
 
 
 @compiled(inline="always")

@@ -46,10 +46,7 @@ def parent_position(nodes, bones, each, parent, position):
 
 @compiled(inline="always")
 def is_preferred(body, bones, labels, each, parent, other, position):
-    """Return whether a path bends at this parent, if it is as long as by way of another parent.
-
-    Preferred is the one that is nearer to the bone, then the first by position.
-    """
+    """Return which of two equally good parents to take: nearer to the bone, then by position."""
     _, _, _, nodes, _, axes = body
     nearer = labels[other].distance if other >= 0 else 0.0
     nearer -= labels[parent].distance if parent >= 0 else 0.0
@@ -85,7 +82,7 @@ def has_line_of_sight(body, labels, parents, each, u, v, position, parent, origi
     point = node[v] - first_point
     if far > 1 + TIE:
         half = far * (0.5 + TIE)
-        direction = _sign(x, half), _sign(y, half), _sign(z, half)
+        direction = x * (abs(x) > half), y * (abs(y) > half), z * (abs(z) > half)
         w = _neighbour(steps, point, direction)
         if far > 2 + TIE and w != OUTSIDE and number[first_point + w] == v:  # in the block of v
             w = _neighbour(steps, w, direction)
@@ -100,27 +97,15 @@ def has_line_of_sight(body, labels, parents, each, u, v, position, parent, origi
 
 
 @compiled(inline="always")
-def _sign(x, least):
-    """Return the sign of x, 0 if its magnitude is not above a limit."""
-    return (1 if x > least else 0) - (1 if x < -least else 0)
-
-
-@compiled(inline="always")
 def _neighbour(steps, point, direction):
-    """Return the lattice point in a direction of -1, 0 or 1 along each axis.
-
-    OUTSIDE if no order of the axes leads to it.
-    """
+    """Return the lattice point a step along each axis; OUTSIDE if no order of steps leads to it."""
     x, y, z = direction
     neighbour = _step(steps, _step(steps, _step(steps, point, 0, x), 1, y), 2, z)
-    if neighbour == OUTSIDE and abs(x) + abs(y) + abs(z) > 1:
-        return _by_another_order(steps, point, x, y, z)
-    return neighbour
+    return neighbour if neighbour != OUTSIDE else _by_another_order(steps, point, direction)
 
 
 @no_refcount
-def _by_another_order(steps, point, x, y, z):
-    direction = x, y, z
+def _by_another_order(steps, point, direction):
     for first in range(3):
         for turn in range(1, 3):
             neighbour = point
@@ -142,20 +127,18 @@ def _step(steps, point, axis, direction):
 
 @no_refcount
 def _traverse(steps, point, x, y, z):
-    """Return whether edges join all cells on a line (Amanatides & Woo 1987).
+    """Return whether edges join all cells on the line of (x, y, z) cells from a lattice point.
 
-    It runs (x, y, z) cells from the middle of the cell of a lattice point.
+    Amanatides & Woo 1987.
     """
+    dx, dy, dz = max(abs(x), TIE), max(abs(y), TIE), max(abs(z), TIE)
     # Where the line next leaves its cell along each axis, as a fraction of its length.
-    tx, ty, tz = 0.5 / max(abs(x), TIE), 0.5 / max(abs(y), TIE), 0.5 / max(abs(z), TIE)
+    tx, ty, tz = 0.5 / dx, 0.5 / dy, 0.5 / dz
     while point != OUTSIDE:
         t = min(tx, ty, tz) + TIE
         if t >= 1:
             return True
         # Through an edge or a corner of the cell it leaves along several.
-        direction = _sign(x, 0) * (tx <= t), _sign(y, 0) * (ty <= t), _sign(z, 0) * (tz <= t)
-        point = _neighbour(steps, point, direction)
-        tx += abs(direction[0] / x) if direction[0] else 0.0
-        ty += abs(direction[1] / y) if direction[1] else 0.0
-        tz += abs(direction[2] / z) if direction[2] else 0.0
+        point = _neighbour(steps, point, (x * (tx <= t), y * (ty <= t), z * (tz <= t)))
+        tx, ty, tz = tx + (tx <= t) / dx, ty + (ty <= t) / dy, tz + (tz <= t) / dz
     return False

@@ -30,12 +30,12 @@ from ..bones import Bones, Sources
 from .contraction import Contraction
 from .labels import (
     END,
+    FIRST,
     NO_JOINT,
     SETTLED,
     bucket_of,
     find_room,
     has_parent,
-    insert,
     join,
     leave,
     limit_of,
@@ -76,7 +76,7 @@ def any_angle_paths(
 
     Shapes: targets (t,), least (K,); returns (j, t).
     """
-    ranking = _ranked(graph, contraction, bones, sources)
+    ranking = rank_bones(graph, contraction, bones, sources)
     count = len(ranking.joints)
     if nearest is not None and least is not None:
         groups = [np.ones(count, np.bool_)]
@@ -117,19 +117,12 @@ def least_distances(
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute the distance of the nearest joint to each kept node, shape (K,)."""
-    ranking = _ranked(graph, contraction, bones, sources)
+    ranking = rank_bones(graph, contraction, bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(contraction.node), every, 1)
     body = body_of(graph, contraction)
     _propagate(body, contraction, ranking, front, np.inf, lambda done: progress("distances", done))
     return front.least
-
-
-def _ranked(
-    graph: CutCellGraph, contraction: Contraction, bones: Bones, sources: Sources
-) -> Ranking:
-    number = contraction.number[sources.node]
-    return rank_bones(graph, bones, Sources(number, sources.bone, sources.distance))
 
 
 def _propagate(
@@ -148,7 +141,7 @@ def _propagate(
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     graph = adjacency, body, ranking.table, within
-    arguments = *graph, front.each, labels, front.parents, front.least, head, scale, ahead
+    arguments = *graph, front.each, labels, front.parents, front.least, (head, scale), ahead
     last, origin, settled = len(head) - 1, 0.0, 0
     bucket = 0
     while True:
@@ -188,27 +181,14 @@ def _leave_out(within: float, near: float, distance: NDArray[np.float64]) -> Non
 
 @no_refcount
 def _settle(
-    adjacency,
-    body,
-    bones,
-    within,
-    each,
-    labels,
-    parents,
-    least,
-    head,
-    scale,
-    ahead,
-    origin,
-    bucket,
-    most,
+    adjacency, body, bones, within, each, labels, parents, least, queue, ahead, origin, bucket, most
 ):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
     `each` is the number of labels a node has; `ahead` is a workspace for a node's edges.
     Returns the bucket to continue with, and how many labels have been settled.
     """
-    indptr, indices = adjacency
+    (indptr, indices), (head, scale) = adjacency, queue
     resolution, first_point, first_surface, nodes, _, _ = body
     settled, time = 0, 0.0
     while bucket < len(head) - 1 and settled < most:
@@ -237,7 +217,6 @@ def _settle(
                     continue
                 limit, other = limit_of(labels, slot, joint), parents[slot]
                 is_same = labels[slot].joint == joint
-                limit += TIE if is_same else 0.0
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
@@ -269,10 +248,7 @@ def _settle(
                 least[v] = min(least[v], reached)
                 # One that is nearer than what is settled has its turn after its equals.
                 turn = max(reached, time + 2 * TIE)
-                further = bucket_of(head, scale, turn - origin)
-                if further > bucket:
-                    join(head, labels, further, slot)
-                else:
-                    insert(head, labels, bucket, slot, turn)
+                later = max(bucket_of(head, scale, turn - origin), bucket)
+                join(head, labels, later, slot, turn if later == bucket else FIRST)
         bucket += head[bucket] == END
     return bucket, settled

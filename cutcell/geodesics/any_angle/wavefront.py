@@ -12,6 +12,7 @@ from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
+from .contraction import Contraction
 from .labels import NO_JOINT, bucket_of, find_room, join, limit_of, no_labels
 
 
@@ -60,7 +61,9 @@ class Wavefront:
     least: NDArray[np.float64]
 
 
-def rank_bones(graph: CutCellGraph, bones: Bones, sources: Sources) -> Ranking:
+def rank_bones(
+    graph: CutCellGraph, contraction: Contraction, bones: Bones, sources: Sources
+) -> Ranking:
     """Order bones, joints and sources by position."""
     order = graph.lattice.order(bones.start, bones.end)
     start, along = bones.start[order], (bones.end - bones.start)[order]
@@ -76,7 +79,7 @@ def rank_bones(graph: CutCellGraph, bones: Bones, sources: Sources) -> Ranking:
         start[first[by_bone]],
         np.column_stack([start, along, inverse]),
         rank,
-        Sources(sources.node[ranked], row[ranked], sources.distance[ranked]),
+        Sources(contraction.number[sources.node[ranked]], row[ranked], sources.distance[ranked]),
     )
 
 
@@ -113,13 +116,12 @@ def begin(
 
 @compiled
 def _enter_sources(labels, parents, least, each, group, rank, node, bone, distance):
-    for s in range(len(node)):
+    for s in range(len(node) - 1, -1, -1):  # of equally near bones the first one stays
         joint, parent = rank[bone[s]], ~bone[s]
         if not group[joint]:
             continue
         label = find_room(labels, each, node[s], joint)
-        limit = limit_of(labels, label, joint)
-        if distance[s] < (limit - TIE if labels[label].joint == joint else limit):
+        if distance[s] < limit_of(labels, label, joint):
             labels[label].joint, parents[label] = joint, parent
             labels[label].distance = distance[s]
             least[node[s]] = min(least[node[s]], distance[s])

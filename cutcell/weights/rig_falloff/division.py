@@ -128,18 +128,7 @@ def _divide(
 
 @no_refcount
 def _divide_by_distance(
-    points,
-    normals,
-    distance,
-    penalty,
-    component,
-    bone,
-    start,
-    end,
-    near,
-    radius,
-    chosen,
-    weights,
+    points, normals, distance, penalty, component, bone, start, end, near, radius, chosen, weights
 ):
     """Divide chosen vertices among joints by distance; `bone` holds the first bone of each joint.
 
