@@ -7,14 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
 from ..rig.checks import check_choice
 
-TIE = 1e-9
-"""Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
-a lattice cell has eight nearest nodes, and rounding must not choose among them."""
 LONGEST = 20.0
 """Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
 
@@ -145,7 +143,7 @@ def bone_samples(
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(way, axis=1)
         way = way * (LONGEST / np.maximum(length, LONGEST))[:, None]
-        cells = np.minimum(length, LONGEST) * graph.lattice.resolution
+        cells = (np.minimum(length, LONGEST) - TIE) * graph.lattice.resolution
         counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]

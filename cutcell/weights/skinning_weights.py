@@ -189,4 +189,4 @@ def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not depend on their numbers."""
     positions = np.full((len(distances.at_welded), 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
-    return np.lexsort(positions.T[::-1])
+    return distances.graph.lattice.order(positions)

@@ -92,10 +92,10 @@ def _find_inverted(
     areas, volumes = measure_faces(vertices, faces)
     flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
     faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
-    area, volume = np.bincount(patch, areas), np.bincount(patch, volumes)
+    area = np.bincount(patch, areas)
     holes, missing = _cap(vertices, rims, of_rim, len(area))
     is_sheet = holes >= OPEN * area
-    volume += missing
+    volume = np.bincount(patch, volumes) + missing
     doubtful = ~is_sheet & (volume < -FLAT * area**1.5)
     if area[is_sheet].sum() > area.sum() / 2:
         doubtful |= is_sheet  # in a soup nothing else decides

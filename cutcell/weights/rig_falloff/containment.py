@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 
 from ...geodesics import Bones
 from ...geometry.triangles import face_edges
+from ...geometry.vectors import TIE
 from ...rig import Skeleton
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
@@ -108,18 +109,24 @@ def make_rigid(
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
-    component, strongest = surface.component, weights.argmax(axis=1)
-    entries = surface.areas, (component, strongest)
-    votes = csr_array(entries, (len(independent), weights.shape[1]))
-    share = votes.max(axis=1).toarray().ravel() / np.maximum(votes.sum(axis=1), 1e-300)
+    component = surface.component
+    entries = surface.areas, (component, strongest(weights))
+    votes = csr_array(entries, (len(independent), weights.shape[1])).toarray()
+    share = votes.max(axis=1) / np.maximum(votes.sum(axis=1), 1e-300)
     rigidity = np.where(independent, 0.0, ramp(share, *RIGID))[component]
     chosen = np.flatnonzero(rigidity)
     if not len(chosen):
         return weights
     result = weights.copy()
     result[chosen] *= 1 - rigidity[chosen, None]
-    result[chosen, votes.argmax(axis=1)[component[chosen]]] += rigidity[chosen]
+    result[chosen, strongest(votes)[component[chosen]]] += rigidity[chosen]
     return result
+
+
+def strongest(shares: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the joint with the largest of each row's shares (n, j), the first of equals."""
+    most = shares.max(axis=1, keepdims=True)
+    return (shares >= most * (1 - TIE)).argmax(axis=1)
 
 
 def ramp(share: NDArray[np.float64], low: float, high: float) -> NDArray[np.float64]:
