@@ -75,10 +75,8 @@ def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str
     if document["bound"]:
         yield "bound again", f"{document['bound']:,} that lost more than half of their weight"
     for loss in cleaned.losses[:FEW]:
-        yield (
-            loss.name,
-            f"{loss.share:.1%} of its weight, on {count(len(loss.vertices), 'vertex')}, "
-            f"up to {loss.largest:.0%} of one",
-        )
+        vertices = count(len(loss.vertices), "vertex")
+        share = f"{loss.share:.1%} of its weight, on {vertices}, up to {loss.largest:.0%} of one"
+        yield loss.name, share
     if len(cleaned.losses) > FEW:
         yield "", f"and {len(cleaned.losses) - FEW} more joints"

@@ -94,12 +94,8 @@ def diagnose(
         save(fix, repaired.rig)
         warnings += saving_notes(fix, repaired.rig)
         codes = [finding.code for finding in repaired.repaired]
-        repair = {
-            "output": str(fix),
-            "codes": codes,
-            "done": list(repaired.done),
-            **after.to_dict(),
-        }
+        done = list(repaired.done)
+        repair = {"output": str(fix), "codes": codes, "done": done, **after.to_dict()}
     if json:
         document = {"input": str(rig), "resolution": resolution, **before.to_dict()}
         print_json({**document, "repair": repair, "warnings": warnings})

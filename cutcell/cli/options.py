@@ -54,9 +54,8 @@ def _stdout(context: typer.Context, path: Path | None) -> Path | None:
     out = Path(context.with_resource(TemporaryDirectory()), "stdout.glb")
     output = sys.stdout.buffer
     context.with_resource(redirect_stdout(sys.stderr))
-    context.call_on_close(
-        output_errors()(lambda: output.write(out.read_bytes() if out.exists() else b""))
-    )
+    write = output_errors()(lambda: output.write(out.read_bytes() if out.exists() else b""))
+    context.call_on_close(write)
     return out
 
 

@@ -65,8 +65,7 @@ def summarize_skeleton(skeleton: Skeleton) -> dict[str, int]:
 
 def summarize_graph(graph: CutCellGraph) -> dict[str, Any]:
     """Count the nodes and edges of each kind."""
-    labels = connected_components(graph.csr(), directed=False)[1]
-    sizes = np.bincount(labels)
+    sizes = np.bincount(connected_components(graph.csr(), directed=False)[1])
     return {
         "resolution": graph.lattice.resolution,
         "nodes": _by_kind(graph.node_kind),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import FileError, SkeletonError
+from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig
 from ..rig.inputs import as_rig
 from ..runtime.writing import check_place, write_all
@@ -102,8 +102,8 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
     if kind == ".json":
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
     program, exported = EXPORTED.get(kind, ("Blender", "GLB"))
-    hint = f"(from {program}: export as {exported})"
-    raise FileError(f'"{kind}" cannot be read; give {READABLE} {hint}')
+    hint = f"from {program}: export as {exported}"
+    raise FileError(f'"{kind}" cannot be read; give {READABLE} ({hint})')
 
 
 def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
@@ -219,6 +219,8 @@ def _check_gltf(kind: str, rig: Rig) -> None:
 
 
 def _gltf_files(rig: Rig, path: Path) -> dict[Path, bytes]:
+    if rig.weights is None:
+        raise WeightsError("the rig has no weights to save; bind it first")
     with malformed():  # parts of the document that loading had no reason to look at
         if isinstance(rig.source, GltfSource):
             return rewritten(rig, path)

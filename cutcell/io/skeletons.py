@@ -16,6 +16,7 @@ from .files import naming
 from .gltf.container import Document, malformed
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
+from .gltf.read.added_skins import has_volume
 from .gltf.read.bones import find_bones
 from .gltf.read.clips import read_clips
 from .gltf.read.compressed import plain_document
@@ -53,15 +54,14 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
     fits = [_fit(rig, choice) for choice in choices]
     chosen = 0 if fits[0] >= SIMILAR * fits[1] else 1
     skeleton = choices[chosen]
-    warnings: list[str] = []
+    warnings = list(rig.warnings)
     if fits[chosen] < MIN_FIT:
         warnings.append(
             f"the joints of {path.name} do not fit the mesh: {_extent(skeleton.joints)} for "
             f"{_extent(rig.mesh.vertices)}. Give the two files the same scale, axes and origin"
         )
     skeleton, _, notes = with_deform(rig.mesh, skeleton, None, stored)
-    warnings = [*rig.warnings, *warnings, *notes]
-    return replace(rig, skeleton=skeleton, clips=clips[chosen], warnings=tuple(warnings))
+    return replace(rig, skeleton=skeleton, clips=clips[chosen], warnings=(*warnings, *notes))
 
 
 def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
@@ -120,11 +120,10 @@ def _of_document(
         bind = read_bind(document, nodes, skins, world)
     else:
         joints = find_bones(document, nodes).joints if bones is None else bones
-        joints = [i for i in joints if np.linalg.matrix_rank(nodes.world[i, :3, :3]) == 3]
+        bind.nodes = [i for i in joints if has_volume(nodes.world[i])]
         if bones is not None:  # of a scene, whose root leads from the file's units and axes
             bind.world = nodes.world[0]
-        bind.nodes = joints
-        bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in joints]
+        bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in bind.nodes]
     if not bind.nodes:
         return Skeleton([], []), bind.world, None, ((), ())  # type: ignore[arg-type]
     stored = read_deform(document, bind.skins, len(bind.nodes))

@@ -159,7 +159,7 @@ def read_document(path: Path) -> Document:
     lengths = [whole(one, "byteLength", f"buffers[{i}]") for i, one in enumerate(buffers)]
     document.buffers = [b""] * len(buffers)
     for i in sorted(range(len(buffers)), key=lambda i: -lengths[i]):
-        document.buffers[i] = _buffer_bytes(path, buffers[i], i, lengths[i], binary, files)
+        document.buffers[i] = _buffer_bytes(path, buffers[i], i, binary, files)
     for image in document.items("images"):  # saving copies them
         beside(path, str(image.get("uri", "data:")))
     document.allow()
@@ -214,18 +214,13 @@ def _number(text: str) -> float:
 
 
 def _buffer_bytes(
-    path: Path,
-    buffer: dict[str, Any],
-    i: int,
-    length: int,
-    binary: bytes | None,
-    files: dict[str, bytes],
+    path: Path, buffer: dict[str, Any], i: int, binary: bytes | None, files: dict[str, bytes]
 ) -> bytes:
     """Return the bytes of a buffer; `files` keeps what was read, for those that want less of it."""
     user = f"buffers[{i}]"
     if any(isinstance(x, dict) and x.get("fallback") is True for x in extensions(buffer).values()):
         return b""  # it is empty: its buffer views are compressed, in another buffer
-    uri = buffer.get("uri")
+    uri, length = buffer.get("uri"), buffer["byteLength"]
     if uri is None:
         if i != 0 or binary is None:
             raise FileError(f"{user} has no data: neither a uri nor a binary chunk")

@@ -33,7 +33,7 @@ class Nodes:
         self.scale = np.ones((count, 3))
         self.local = self._read_transforms()  # (k, 4, 4)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
-            self.world = self.compose_world(self.local[None])[0]
+            self.world = self.relative_to([])
         far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
         if len(far):
             raise FileError(
@@ -67,14 +67,6 @@ class Nodes:
             )
         return numbers
 
-    def compose_world(self, local: NDArray) -> NDArray:
-        """Return world matrices, shape (f, k, 4, 4), from local ones of the same shape."""
-        world = local.copy()
-        parents = np.array(self.parents, int)
-        for level in self.levels[1:]:
-            world[:, level] = world[:, parents[level]] @ local[:, level]
-        return world
-
     def with_ancestors(self, nodes: list[int]) -> list[int]:
         """Return some nodes and all that are above any of them, each once."""
         reached: set[int] = set()
@@ -94,7 +86,7 @@ class Nodes:
         return nearest
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
-        """Return matrices, shape (k, 4, 4), from each node to the nearest of some above it."""
+        """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, else to the scene."""
         relative = self.local.copy()
         parents = np.array(self.parents, int)
         chosen = np.zeros(len(self.raw), bool)

@@ -132,7 +132,7 @@ class _SceneBuilder(GltfBuilder):
         columns = scene[f"mesh_{k}_columns"]
         influences = sorted_influences(rows, columns, values, count, MAX_INFLUENCES)
         with np.errstate(over="ignore"):  # readers refuse what becomes infinite
-            return store_influences(self.buffer, influences, len(skin.joints))
+            return store_influences(self.buffer, influences, len(skin.joints), {})
 
     def add_clips(self, scene: Mapping[str, NDArray]) -> None:
         clips: list[dict[str, Any]] = [

@@ -59,9 +59,7 @@ def has_volume(matrix: NDArray[np.float64]) -> bool:
     return bool(np.linalg.matrix_rank(matrix[:3, :3]) == 3)
 
 
-def add_skins(
-    document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, NDArray[np.float64]]
-) -> None:
+def add_skins(document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, NDArray]) -> None:
     """Give a skin of all joints to nodes with meshes; their matrices lead to the rig's space."""
     skins: dict[bytes, int] = {}
     used = {node["mesh"] for i, node in enumerate(nodes.raw) if "mesh" in node and i not in to_rig}
@@ -154,9 +152,7 @@ def moved(points: NDArray, matrix: NDArray) -> NDArray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _hanging(
-    document: Document, nodes: Nodes, bind: Bind
-) -> Iterator[tuple[int, int, NDArray[np.float64]]]:
+def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[tuple[int, int, NDArray]]:
     """Yield nodes with a mesh without a skin below a joint, the joint, the matrix to the rig."""
     place = {node: j for j, node in enumerate(bind.nodes)}
     nearest = nodes.nearest(place)

@@ -65,10 +65,15 @@ class Track:
         left = np.searchsorted(self.keys, seconds, side="right") - 1
         left = left.clip(0, len(self.keys) - 1)
         right = np.minimum(left + 1, len(self.keys) - 1)
-        values = (self._keyed(left), self._keyed(right))
-        return _interpolated(
-            self.keys[left], self.keys[right], *values, self.how, seconds, self.path
-        )
+        before, a, b = self.keys[left], self._keyed(left), self._keyed(right)
+        if self.how == STEP:
+            return a
+        span = self.keys[right] - before
+        u = np.divide(seconds - before, span, out=np.zeros(len(seconds)), where=span > 0)
+        u = u.clip(0, 1)[:, None, None]
+        if self.how == CUBICSPLINE:
+            return _hermite(a, b, span[:, None, None], u)
+        return _slerp(a, b, u) if self.path == "rotation" else a * (1 - u) + b * u
 
     def _keyed(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return the values at some keys, shape (f, c, width), or (f, c, 3, width)."""
@@ -232,23 +237,6 @@ class _Subtree:
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]
         return world
-
-
-def _interpolated(
-    before: NDArray, after: NDArray, left: NDArray, right: NDArray, how: str, times: NDArray,
-    path: str,
-) -> NDArray:  # fmt: skip
-    """Interpolate channels from left to right (f, c, width), between times (f,) of keys (f,)."""
-    if how == STEP:
-        return left
-    span = after - before
-    u = np.divide(times - before, span, out=np.zeros(len(times)), where=span > 0)
-    u = u.clip(0, 1)[:, None, None]
-    if how == CUBICSPLINE:
-        return _hermite(left, right, span[:, None, None], u)
-    if path == "rotation":
-        return _slerp(left, right, u)
-    return left * (1 - u) + right * u
 
 
 def _hermite(a: NDArray, b: NDArray, span: NDArray, u: NDArray) -> NDArray:

@@ -60,11 +60,11 @@ class GltfSource:
     inverse: NDArray[np.float64]  # (j, 4, 4): of each joint, for vertices in the rig's space
     faces: tuple[StoredFaces, ...] = ()
     attached: tuple[int, ...] = ()  # the node of each attachment
-    rescaled: NDArray[np.bool_] | None = None
-    """Vertices whose weights are saved as they were loaded, not as the document has them."""
     mended: dict[int, dict[int, NDArray[np.float64]]] = field(default_factory=dict)
     """Inverse bind matrices that contradict their nodes, as they should be: by skin, and by the
     joint's number in it."""
+    rescaled: NDArray[np.bool_] | None = None
+    """Vertices whose weights are saved as they were loaded, not as the document has them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +128,7 @@ def read_rig(
         raise MeshError("its skinned meshes have no triangles")
     mesh = stored.mesh()
     shape = len(mesh.vertices), len(bind.nodes)
-    weights, sums = _dense(document, parts, stored.weights, shape, rigid)
+    weights, sums = _dense(document, stored, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
     skeleton, weights, warnings = with_deform(
         mesh, read_skeleton(nodes, bind), weights, stored_deform
@@ -140,6 +140,8 @@ def read_rig(
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
     document.forget()
+    faces, shown = tuple(stored.drawn), tuple(attached)
+    source = GltfSource(document, parts, skeleton, bind.nodes, inverse, faces, shown, bind.mended)
     return Rig(
         mesh,
         skeleton,
@@ -153,16 +155,7 @@ def read_rig(
         left_out=left_out,
         warnings=(*document.warnings, *warnings),
         weight_sums=sums,
-        source=GltfSource(
-            document,
-            parts,
-            skeleton,
-            bind.nodes,
-            inverse,
-            tuple(stored.drawn),
-            tuple(attached),
-            mended=bind.mended,
-        ),
+        source=source,
     )
 
 
@@ -273,18 +266,14 @@ def _read_parts(
 
 
 def _dense(
-    document: Document,
-    parts: list[StoredPart],
-    stored: list[ReadWeights],
-    shape: tuple[int, int],
-    rigid: Mapping[int, int],
+    document: Document, stored: _Stored, shape: tuple[int, int], rigid: Mapping[int, int]
 ) -> tuple[NDArray | None, NDArray | None]:
     """Return all weights and the rows' sums in the file; `rigid` has the joints of rigid meshes."""
-    if all(read.weights is None for read in stored):
+    if all(read.weights is None for read in stored.weights):
         return None, None
     document.allowance.take_weights(*shape)
     weights, sums = np.zeros(shape), np.zeros(shape[0])
-    for part, read in zip(parts, stored, strict=True):
+    for part, read in zip(stored.parts, stored.weights, strict=True):
         if read.weights is not None and read.sums is not None:
             weights[part.rows, part.joints] = read.weights
             sums[part.rows] = read.sums

@@ -174,10 +174,8 @@ def read_bind(
             to_rig = np.eye(4)
         elif shared:
             inverse = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
-            shares = one.shares[shared]
             relations = np.linalg.inv(inverse) @ one.inverse[shared]
-            shares = shares if shares.any() else np.ones(len(shared))
-            to_rig = agreed(relations, shares, one.corners)
+            to_rig = agreed(relations, one.votes(shared), one.corners)
         else:
             to_rig = np.linalg.inv(bind.world) @ _stands(one, [_votes(one, np.eye(4))])
         if not invertible(to_rig):
@@ -193,8 +191,7 @@ def read_bind(
                 if one.mended[k]:
                     mended.add(place[node])
                 if k in one.stays:
-                    stays = to_rig @ [*one.stays[k], 1.0]
-                    bind.stays[place[node]] = stays[:3]
+                    bind.stays[place[node]] = (to_rig @ [*one.stays[k], 1.0])[:3]
                 if not one.has_binds and len(one.nodes) > 1:
                     bind.unbound.add(place[node])
             elif place[node] in mended and not one.mended[k]:
@@ -211,9 +208,8 @@ def read_bind(
             k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
             for k in np.flatnonzero(one.mended).tolist()
         }
-    if mended - set(bind.stays):
+    if placed := sorted(mended - set(bind.stays)):
         names = _names(nodes, bind)
-        placed = sorted(mended - set(bind.stays))
         document.warnings.append(mended_warning([names[j] for j in placed]))
     return bind
 
@@ -226,8 +222,7 @@ def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     at_rest = np.linalg.inv(np.array(bind.inverse))
     if bind.unbound:
         by_nodes = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
-        unbound = sorted(bind.unbound)
-        at_rest[unbound] = by_nodes[unbound]
+        at_rest[list(bind.unbound)] = by_nodes[list(bind.unbound)]
     positions = at_rest[:, :3, 3]
     for j, place_of_joint in bind.stays.items():
         positions[j] = place_of_joint

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .... import __version__
-from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
+from ....errors import CutcellError, MeshError, SkeletonError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...materials.corners import vertex_normals
@@ -28,8 +28,6 @@ MAX_SHIFT = 1e-3
 
 def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     """Return the files of a rig for which `check_fits` was called, coloured by its own file."""
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     buffer = with_rig_looks(*_document(rig), rig)
     return packed(buffer, Document(path, {}, []), path, {})
 
@@ -75,7 +73,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
         builder.json["nodes"][count]["matrix"] = rig.world.T.ravel().tolist()
     influences = pack_influences(rig.weights)  # type: ignore[arg-type]
     attributes = _attributes(builder, rig.mesh)
-    attributes |= store_influences(builder.buffer, influences, count)
+    attributes |= store_influences(builder.buffer, influences, count, {})
     mesh = builder.add_mesh(rig.name, attributes, rig.mesh.faces)
     binds, deform = inverses(rig.skeleton), {KEY: rig.skeleton.deform.tolist()}
     skin = builder.add_skin(list(range(count)), binds, extras=deform)

@@ -76,8 +76,7 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     is_moved = (new != source.skeleton.joints[old]).any(axis=1, keepdims=True)
     frames = np.linalg.inv(source.inverse)[old, :3, 3]  # a mended joint may be away from its frame
     by[old] = np.where(is_moved, new - frames, 0.0)
-    moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
-    return moved
+    return np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
 
 
 def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
@@ -143,9 +142,7 @@ def _binds(
     return replaced
 
 
-def _translations(
-    document: dict[str, Any], loaded: Document, shifts: NDArray[np.float64]
-) -> list[NewValues]:
+def _translations(document: dict[str, Any], loaded: Document, shifts: NDArray) -> list[NewValues]:
     replaced = []
     for i, animation in enumerate(document.get("animations", [])):
         label = loaded.label("animations", i)
@@ -157,9 +154,8 @@ def _translations(
                 continue
             sampler = samplers[channel["sampler"]]
             if uses[channel["sampler"]] > 1:  # what moves other nodes, too, stays
-                sampler = dict(sampler)
                 channel["sampler"] = len(samplers)
-                samplers.append(sampler)
+                samplers.append(sampler := dict(sampler))
             old = sampler.pop("output")
             values = read_accessor(loaded, old, "VEC3", label).astype(np.float64)
             if sampler.get("interpolation") == CUBICSPLINE:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from ....errors import WeightsError
 from ....rig import Rig
 from ..buffer import BufferWriter
 from ..builder import GltfBuilder
@@ -42,8 +41,6 @@ def can_be_skinned(rig: Rig) -> bool:
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
     """Return the files of a document that gets joints and skins, and is then saved as any other."""
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source
     stored, skeleton = source.document, rig.skeleton
     copied = {"json": json.loads(json.dumps(stored.json)), "buffers": list(stored.buffers)}

@@ -72,8 +72,6 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     remedy = "set the rig's source to None to write a new file instead"
     count = source.parts[-1].rows.stop
     if len(rig.mesh.vertices) != count:
