@@ -62,10 +62,7 @@ def load_demo(
 
 
 def load_files(
-    session: Session,
-    paths: list[Path],
-    key: str = "",
-    chosen: Callable[[], None] = lambda: None,
+    session: Session, paths: list[Path], key: str = "", chosen: Callable[[], None] = lambda: None
 ) -> None:
     """Show the character in some files, and bind it.
 

@@ -80,12 +80,7 @@ def recomputed(
 
 
 def recompute(
-    bound: Any,
-    reach: Computed,
-    options: dict[str, Any],
-    rig: Rig,
-    layer: Layer,
-    progress: Progress,
+    bound: Any, reach: Computed, options: dict[str, Any], rig: Rig, layer: Layer, progress: Progress
 ) -> Recomputed:
     """Compute the weights of a layer by options of a method, with a `Bound` for the base."""
     distances, method = bound.binding.distances, cutcell.ANIMATION.with_options(**options)

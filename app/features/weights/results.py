@@ -210,12 +210,7 @@ def _explanation_inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _explanation(
-    rig: Rig,
-    binding: Binding,
-    vertex: int,
-    edits: Edits,
-    joint: Any,
-    progress: Progress,
+    rig: Rig, binding: Binding, vertex: int, edits: Edits, joint: Any, progress: Progress
 ) -> Any:
     return cutcell.explain(
         rig,
