@@ -30,13 +30,7 @@ CACHED = 4
 
 @dataclass(frozen=True, eq=False)
 class Recomputed:
-    """Weights of many influences for a layer that is computed otherwise than the base.
-
-    Parameters
-    ----------
-    distances : BoneDistances
-    weights : csr_array, shape (n, j), float64
-    """
+    """Weights (n, j) of many influences for a layer that is computed otherwise than the base."""
 
     distances: BoneDistances
     weights: csr_array
