@@ -86,14 +86,8 @@ def to_query(
 def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Read an address.
 
-    Returns
-    -------
-    choices : dict
-        Values for the state's parameters that need no character.
-    arrival : dict
-        The entries of `READERS` that the address has.
-    problems : list of str
-        Entries that could not be read.
+    Returns values of parameters that need no character, the entries of `READERS` that the address
+    has, and the entries that could not be read.
     """
     current = simple(state)
     choices: dict[str, Any] = {}

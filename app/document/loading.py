@@ -39,14 +39,7 @@ def load_demo(
 ) -> None:
     """Show a demo character and bind it.
 
-    Parameters
-    ----------
-    session : Session
-    id : str
-    chosen : callable
-        Chooses more, together with the character.
-    then : callable
-        Called when the character is open.
+    `chosen` chooses more, together with the character; `then` is called when it is open.
     """
     session.state.demo = id
     title = next(demo.title for demo in DEMOS if demo.id == id)
@@ -62,22 +55,11 @@ def load_demo(
 
 
 def load_files(
-    session: Session,
-    paths: list[Path],
-    key: str = "",
-    chosen: Callable[[], None] = lambda: None,
+    session: Session, paths: list[Path], key: str = "", chosen: Callable[[], None] = lambda: None
 ) -> None:
-    """Show the character in some files, and bind it.
+    """Show the character in some files, and bind it; `chosen` chooses more, together with it.
 
-    Parameters
-    ----------
-    session : Session
-    paths : list of Path
-        The file, and those that belong to it.
-    key : str
-        That of uploaded files; see `UploadCache`. Without one they are files of this machine.
-    chosen : callable
-        Chooses more, together with the character.
+    Without a key, see `UploadCache`, they are files of this machine.
     """
     uploads = session.uploads
     if not key:
@@ -108,16 +90,7 @@ def load_upload(session: Session, group: Group) -> None:
 
 
 def load_again(session: Session, character: str, chosen: Callable[[], None] = lambda: None) -> None:
-    """Show a character that was open before.
-
-    Parameters
-    ----------
-    session : Session
-    character : str
-        Its `Session.character`.
-    chosen : callable
-        Chooses more, together with the character.
-    """
+    """Show a character that was open before, by its `Session.character`."""
     kind, _, demo = character.partition(" ")
     if kind == "demo":
         load_demo(session, demo, chosen)
@@ -179,17 +152,7 @@ def receiver(session: Session) -> Receiver:
 def show_rig(
     session: Session, rig: Rig, chosen: Callable[[], None] = lambda: None, character: str = ""
 ) -> None:
-    """Show a character that is loaded already, and bind it.
-
-    Parameters
-    ----------
-    session : Session
-    rig : Rig
-    chosen : callable
-        Chooses more, together with the character.
-    character : str
-        See `Session.character`.
-    """
+    """Show a character that is loaded already, and bind it; `chosen` chooses more with it."""
     state, view = session.state, session.view
     old, session.character = session.character, character
     edits, problem = edits_in(rig)

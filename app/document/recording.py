@@ -29,11 +29,7 @@ def watch(session: Session) -> None:
 def begin(session: Session, before: str) -> None:
     """Begin the history of a new character, or continue that of one restored by *Back*.
 
-    Parameters
-    ----------
-    session : Session
-    before : str
-        Key of the character that was open; see `Session.character`.
+    `before` is the key of the character that was open; see `Session.character`.
     """
     now = _now(session)
     if session.returning:

@@ -198,12 +198,8 @@ class UploadCache:
 class PageUploads:
     """The uploaded files that one page uses.
 
-    Attributes
-    ----------
-    key : str
-        Key of the open character; empty if it was not uploaded.
-    listed : dict of str to str
-        Keys and names of the characters that were opened, in order.
+    `key` is that of the open character, empty if it was not uploaded; `listed` has the keys and
+    names of the characters that were opened, in order.
     """
 
     def __init__(self, cache: UploadCache) -> None:

@@ -93,8 +93,7 @@ def render(
         ),
     ] = None,
     quiet: Annotated[
-        bool,
-        typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES),
+        bool, typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES)
     ] = False,
 ) -> None:
     """Draw a character as the page shows it: a picture, a figure, a film or an interactive page.

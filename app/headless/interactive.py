@@ -171,11 +171,7 @@ def _joints(state: State, memo: Memo, progress: Progress) -> dict[str, list[Any]
         rings.append(gizmo_part(state))
         state.panel = "distance"
         distances.append(_message(following(state, memo)))
-    return {
-        "weights": [*weights, _mixed(state, memo)],
-        "distance": distances,
-        "rings": rings,
-    }
+    return {"weights": [*weights, _mixed(state, memo)], "distance": distances, "rings": rings}
 
 
 def _mixed(state: State, memo: Memo) -> dict[str, Any]:

@@ -17,12 +17,7 @@ PARTS = ("animation", "bones", "brush", "camera", "clip", "front", "gizmo", "ima
 
 
 class Recorder:
-    """A session, and the thread that owns it.
-
-    Attributes
-    ----------
-    session : Session
-    """
+    """A session, and the thread that owns it."""
 
     def __init__(self) -> None:
         self._actions: queue.Queue[Callable[[], Any]] = queue.Queue()
@@ -34,13 +29,7 @@ class Recorder:
         self.session.close()
 
     def rest(self) -> None:
-        """Run until no work is left.
-
-        Raises
-        ------
-        CutcellError
-            Something failed.
-        """
+        """Run until no work is left; raise a `CutcellError` where something failed."""
         work, is_idle = self.session.work, False
 
         def end() -> None:

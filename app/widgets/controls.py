@@ -91,16 +91,8 @@ def pick(
     """Return a menu of names, of which some may be equal.
 
     Names, not indices, are its values: an index that stays would keep the name that it had.
-
-    Parameters
-    ----------
-    label : str or callable
-    names, index : callable
-        Functions of a `Reader`: the names, and the index of the chosen one.
-    act : callable
-        Called with the session and the index of the one that a person chooses.
-    **options
-        See `Control`.
+    `names` and `index` are functions of a `Reader`; `act` is called with the session and the index
+    of the one that a person chooses.
     """
 
     def shows(state: Any) -> dict[str, Any]:

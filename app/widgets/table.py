@@ -70,13 +70,7 @@ class Control:
 def draw(session: Session, row: Any, panel: str = "") -> Any:
     """Return the widget of a row, which follows the state of a session from now on.
 
-    Parameters
-    ----------
-    session : Session
-    row : Control, Viewable or callable
-        A function of the session returns another row.
-    panel : str, optional
-        Panel that the row is a part of.
+    A function of the session returns another row. `panel` is the one that the row is a part of.
     """
     return _draw(Followers(session, panel), row, None)
 

@@ -39,9 +39,7 @@ class Repair:
 
 
 PANEL = Panel(
-    "Check",
-    '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>',
-    works_without_skeleton=True,
+    "Check", '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>', works_without_skeleton=True
 )
 
 

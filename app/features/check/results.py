@@ -145,11 +145,7 @@ def take_back(session: Session) -> None:
 
 RESULTS = (
     Derived(
-        "diagnosis",
-        _inputs,
-        _diagnosis,
-        more=lambda state: (_reusable(state),),
-        after=("binding",),
+        "diagnosis", _inputs, _diagnosis, more=lambda state: (_reusable(state),), after=("binding",)
     ),
     Derived(
         "export_diagnosis",

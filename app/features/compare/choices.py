@@ -42,11 +42,7 @@ def standard(rig: Any, base: str = "computed") -> list[str]:
     return [name for name in offered(rig) if name in (first, "artist", "euclidean")]
 
 
-PANEL = Panel(
-    "Compare",
-    '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
-    poses=True,
-)
+PANEL = Panel("Compare", '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>', poses=True)
 
 
 class Choices(param.Parameterized):

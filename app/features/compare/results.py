@@ -137,14 +137,7 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
 def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
     """Set the methods for a new character: those of an address, else those chosen before.
 
-    Parameters
-    ----------
-    state : State
-        With the new character.
-    before : Rig or None
-        The character that was open before.
-    arrival : mapping
-        "methods", those of `SINGLE` and "settled", as far as an address says them.
+    `arrival` may have "methods", those of `SINGLE`, and "settled".
     """
     standards = [standard(before, base) for base in ("computed", "file")]
     chosen = [] if state.methods in standards else state.methods

@@ -68,15 +68,7 @@ class Choices(param.Parameterized):
 
 @dataclass(frozen=True, eq=False)
 class Dragged:
-    """Preview while joints are dragged.
-
-    Parameters
-    ----------
-    rig : Rig
-        With the joints where the pointer has them.
-    binding : Binding
-        The newest that there is; of joints where they were a moment ago.
-    """
+    """Preview while joints are dragged: the rig as the pointer has it, and the newest binding."""
 
     rig: Rig
     binding: Binding
@@ -170,13 +162,7 @@ def to_text(edits: Edits) -> str:
 
 
 def from_text(text: str) -> Edits:
-    """Read what `to_text` returns.
-
-    Raises
-    ------
-    ValueError
-        It is something else.
-    """
+    """Read what `to_text` returns; raise a `ValueError` for other texts."""
     try:
         packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
         plain = zlib.decompressobj().decompress(packed, MAX_BYTES)

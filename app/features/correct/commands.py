@@ -32,13 +32,7 @@ def correct(session: Session, edits: Edits) -> None:
 
 
 def edited_state(session: Session, edits: Edits) -> dict[str, Any]:
-    """Return the values of the state that edits of the open character change.
-
-    Raises
-    ------
-    CutcellError
-        It cannot be edited so.
-    """
+    """Return the values of the state that edits of the open character change."""
     state = session.state
     return changes(state, edited_rig(state.own, edits), edits)
 

@@ -130,15 +130,7 @@ def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.f
 
 
 def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return each vertex's connected component, and the components and sizes.
-
-    Returns
-    -------
-    which : array, shape (n,)
-        The largest part is 0.
-    sizes : array, shape (c,)
-        In vertices of the file.
-    """
+    """Return each vertex's connected component (n,), the largest being 0, and their sizes (c,)."""
     links = graph.edges[graph.edge_kind == MESH]
     label = label_components(links, graph.first_point)[graph.vertex_node]
     sizes = np.bincount(label)

@@ -114,13 +114,7 @@ def centre(session: Session) -> None:
 
 
 def moved(session: Session, place: ArrayLike) -> Edits:
-    """Return the edits with the chosen joint somewhere, and its partner mirrored.
-
-    Raises
-    ------
-    CutcellError
-        It cannot be there.
-    """
+    """Return the edits with the chosen joint somewhere, and its partner mirrored."""
     state, joint = session.state, session.state.joint
     places = {joint: np.asarray(place, float)}
     mirror, partner = mirror_of(session), moves_along(session)
@@ -156,12 +150,7 @@ def digits_of(rig: Rig) -> int:
 
 
 class Hand:
-    """Moves joints as the handle in the view is dragged.
-
-    Parameters
-    ----------
-    session : Session
-    """
+    """Moves joints as the handle in the view is dragged."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -170,10 +159,7 @@ class Hand:
     def move(self, message: dict[str, Any]) -> None:
         """Show the character with the chosen joint somewhere; take it when it is let go.
 
-        Parameters
-        ----------
-        message : dict
-            The number of the "joint", its "position" in the scene, and whether it is "done".
+        The message has the number of the "joint", its "position" in the scene, and "done".
         """
         session, state = self._session, self._session.state
         if state.binding is None or int(message["joint"]) != state.joint:

@@ -56,11 +56,7 @@ def _falloff(state: Any) -> dict[str, Any] | None:
         "curve": {"name": title, "points": np.column_stack([places, curve])[:-1].tolist()},
         "twice": [2 * d, float(curve[-1])],
         "marks": [
-            {
-                "name": names[j],
-                "at": [distance[j], weights[j]],
-                "chosen": j == state.joint,
-            }
+            {"name": names[j], "at": [distance[j], weights[j]], "chosen": j == state.joint}
             for j in nearest.tolist()
         ],
     }

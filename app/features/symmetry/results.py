@@ -63,11 +63,7 @@ def _asymmetry(image: MirrorImage, source: Any, progress: Progress) -> Asymmetry
 
 RESULTS = (
     Derived(
-        "mirror_image",
-        _image_inputs,
-        _image,
-        more=lambda state: (state.rig,),
-        wanted=is_wanted,
+        "mirror_image", _image_inputs, _image, more=lambda state: (state.rig,), wanted=is_wanted
     ),
     Derived(
         "asymmetry",

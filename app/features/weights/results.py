@@ -180,18 +180,7 @@ def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
 def bind_as_chosen(
     state: State, rig: Rig, edits: Edits, graph: CutCellGraph, progress: Progress
 ) -> Binding:
-    """Return the binding of a rig, other than the open one, by the present choices.
-
-    Parameters
-    ----------
-    state : State
-        Or a copy of it.
-    rig : Rig
-    edits : Edits
-    graph : CutCellGraph
-        Of the rig.
-    progress : callable
-    """
+    """Return the binding of a rig, other than the open one, by the choices of a state."""
     options = wide_options(state), falloff_options(state)
     bound = bind_wide(rig, graph, edits.reach, *options, progress)
     recomputed = {
@@ -210,12 +199,7 @@ def _explanation_inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _explanation(
-    rig: Rig,
-    binding: Binding,
-    vertex: int,
-    edits: Edits,
-    joint: Any,
-    progress: Progress,
+    rig: Rig, binding: Binding, vertex: int, edits: Edits, joint: Any, progress: Progress
 ) -> Any:
     return cutcell.explain(
         rig,
