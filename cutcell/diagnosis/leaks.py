@@ -69,8 +69,7 @@ def moves_own_part(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
 
     Shapes: weights (n, j).
     """
-    moves: NDArray[np.bool_] = weights.max(axis=0, initial=0) > LEADING
-    return moves
+    return np.asarray(weights.max(axis=0, initial=0) > LEADING)
 
 
 def _stray_advice(weights: NDArray[np.float64]) -> str:
@@ -116,20 +115,13 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         joints.append(j)
         places.append(islands)
         worst = max(worst, (most, j))
-        lines.append(
-            f"{subject.name(j)}: up to {most:.0%} on {count(len(np.unique(label)), 'island')} of "
-            f"{count(len(islands), 'vertex')}"
-        )
+        where = f"{count(len(np.unique(label)), 'island')} of {count(len(islands), 'vertex')}"
+        lines.append(f"{subject.name(j)}: up to {most:.0%} on {where}")
     if not joints:
         return
     vertices = subject.vertices_at(np.concatenate(places))
-    yield from found(
-        "weight-islands",
-        vertices=vertices,
-        joints=np.array(joints),
-        details=lines,
-        pose=pose_of(subject, worst[1], vertices),
-    )
+    pose, at = pose_of(subject, worst[1], vertices), np.array(joints)
+    yield from found("weight-islands", vertices=vertices, joints=at, details=lines, pose=pose)
 
 
 def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -149,12 +141,9 @@ def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Find
     if len(asymmetric) <= ASYMMETRIC * len(paired):
         return
     gap = np.abs(weights[paired] - other)[differ > UNLIKE]
-    yield from found(
-        "asymmetric-weights",
-        vertices=asymmetric,
-        joints=np.flatnonzero((gap > UNLIKE).any(axis=0)),
-        pose=pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric),
-    )
+    joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
+    pose = pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric)
+    yield from found("asymmetric-weights", vertices=asymmetric, joints=joints, pose=pose)
 
 
 def pose_of(subject: Subject, joint: int, vertices: NDArray[np.intp]) -> Pose:

@@ -39,8 +39,6 @@ BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
 ROOM = 0.05
 """Around the box of a part, as part of its longest side, where a joint still lies in it."""
-FarPart = tuple[NDArray[np.intp], int, int]
-"""Its vertices, the joint that it follows and the nearest one."""
 SHARED = 0.1
 """A part moves with the body that it touches if that gives more weight to the part's joint."""
 
@@ -50,11 +48,8 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
     if (subject.graph.node_kind == INTERIOR).any():
         yield from _thin(subject)
     else:
-        yield from found(
-            "no-interior",
-            vertices=np.flatnonzero(subject.is_used),
-            resolution=subject.graph.lattice.resolution,
-        )
+        used, resolution = np.flatnonzero(subject.is_used), subject.graph.lattice.resolution
+        yield from found("no-interior", vertices=used, resolution=resolution)
     if len(subject.rig.skeleton.joints):
         yield from _unreachable(subject)
         yield from _loose(subject)
@@ -96,10 +91,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
 
 
 def _depths(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    places: NDArray[np.intp],
-    resolution: int,
+    points: NDArray[np.float64], faces: NDArray[np.int32], places: NDArray[np.intp], resolution: int
 ) -> NDArray[np.float64]:
     """Measure how thick the body is below vertices, in cells; 0 where nothing is inside.
 
@@ -113,21 +105,16 @@ def _depths(
     inside = winding_number(body, below.reshape(-1, 3)).reshape(len(chosen), -1) >= 0.5
     deep = np.cumprod(inside, axis=1).sum(axis=1)
     depth = np.concatenate([[0], DEPTHS])[deep]
-    if step == 1:
-        return depth
-    nearest: NDArray[np.float64] = depth[cKDTree(points[chosen]).query(points[places])[1]]
-    return nearest
+    return depth if step == 1 else depth[cKDTree(points[chosen]).query(points[places])[1]]
 
 
 def _unreachable(subject: Subject) -> Iterator[Finding]:
     lost = np.flatnonzero((subject.distances.fallback == UNREACHED) & subject.is_used)
     pieces = np.unique(subject.component[subject.welded[lost]])
     is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
-    follows = (
-        "they follow their nearest bones in a straight line"
-        if is_large
-        else "small components follow what they sit on"
-    )
+    follows = "small components follow what they sit on"
+    if is_large:
+        follows = "they follow their nearest bones in a straight line"
     yield from found(
         "unreachable-vertices",
         severity="warning" if is_large else "note",
@@ -151,8 +138,7 @@ def _loose(subject: Subject) -> Iterator[Finding]:
     used = np.unique(subject.component[subject.welded[subject.is_used]])
     if len(used) < 2:
         return
-    faces = subject.graph.faces[subject.whole]
-    bones = subject.distances.bones
+    faces, bones = subject.graph.faces[subject.whole], subject.distances.bones
     containment = bone_containment(subject.points, faces, subject.component, bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
     yield from found(

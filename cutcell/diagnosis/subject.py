@@ -28,10 +28,8 @@ OUTSIDE = 0.05
 
 def bones_distance(bones: Bones, joint: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Measure from points (p, 3) straight to the nearest bone of a joint."""
-    of_joint = np.flatnonzero(bones.joint == joint)
-    return np.min(
-        [distance_to_segment(points, bones.start[b], bones.end[b]) for b in of_joint], axis=0
-    )
+    own = np.flatnonzero(bones.joint == joint)
+    return np.min([distance_to_segment(points, bones.start[b], bones.end[b]) for b in own], axis=0)
 
 
 class Subject:
@@ -51,9 +49,8 @@ class Subject:
     @cached_property
     def graph(self) -> CutCellGraph:
         """The cut-cell graph."""
-        return build_graph(
-            self.rig.mesh, self.resolution, connectivity="any", progress=self.progress
-        )
+        mesh, resolution = self.rig.mesh, self.resolution
+        return build_graph(mesh, resolution, connectivity="any", progress=self.progress)
 
     @cached_property
     def distances(self) -> BoneDistances:
@@ -144,8 +141,7 @@ class Subject:
     def vertex_areas(self) -> NDArray[np.float64]:
         """`place_areas` divided among the vertices of the file at each place, shape (n,)."""
         shared = np.bincount(self.welded, minlength=len(self.points))
-        area: NDArray[np.float64] = (self.place_areas / shared)[self.welded]
-        return area
+        return np.asarray((self.place_areas / shared)[self.welded])
 
     @cached_property
     def component(self) -> NDArray[np.int32]:
