@@ -86,7 +86,7 @@ class Nodes:
         return nearest
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
-        """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, else to the scene."""
+        """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, or the scene."""
         relative = self.local.copy()
         parents = np.array(self.parents, int)
         chosen = np.zeros(len(self.raw), bool)

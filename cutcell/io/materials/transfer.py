@@ -133,9 +133,8 @@ def _of_body(
 
 def _of_node(document: Document, number: int) -> Iterator[tuple[Any, int, slice]]:
     mesh = document.items("nodes")[number]["mesh"]
-    for primitive, first, rows in read_triangles(document, mesh, document.label("nodes", number))[
-        2
-    ]:
+    drawn = read_triangles(document, mesh, document.label("nodes", number))[2]
+    for primitive, first, rows in drawn:
         yield _what(document, mesh, primitive), first, rows
 
 
