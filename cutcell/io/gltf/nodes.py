@@ -133,10 +133,9 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
     levels = [children.get(-1, [])]
     while levels[-1]:
         levels.append([c for i in levels[-1] for c in children.get(i, ())])
-    reached = sum(len(level) for level in levels)
-    if reached < len(parents):
-        reached_nodes = {i for level in levels for i in level}
-        stuck = next(i for i in range(len(parents)) if i not in reached_nodes)
+    reached = {i for level in levels for i in level}
+    if len(reached) < len(parents):
+        stuck = next(i for i in range(len(parents)) if i not in reached)
         raise SkeletonError(
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )

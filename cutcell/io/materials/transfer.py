@@ -74,9 +74,8 @@ def read_materials(rig: Rig) -> Materials | None:
     if len(whole) < len(colors):
         return None
     layers, images = tuple(collected.layers), tuple(collected.images)
-    return Materials(
-        whole[0], whole[1:], layers, images, tuple(collected.notes), tuple(collected.names)
-    )
+    notes, names = tuple(collected.notes), tuple(collected.names)
+    return Materials(whole[0], whole[1:], layers, images, notes, names)
 
 
 def read_corners(rig: Rig) -> Corners:

@@ -179,7 +179,7 @@ def read_scene(path: Path, accessories: bool = False) -> Rig:
         "skeleton from another file, or fit one"
     )
     why_bare *= "morph targets" in dropped
-    return read_rig(document, path, world, accessories, why_bare=why_bare)
+    return read_rig(document, world, accessories, why_bare)
 
 
 def scene_arrays(path: Path) -> Mapping[str, NDArray]:

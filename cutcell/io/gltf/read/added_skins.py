@@ -8,7 +8,7 @@ bind matrices contain it.
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from copy import deepcopy
 
 import numpy as np
@@ -106,9 +106,7 @@ def _name(document: Document, nodes: Nodes, bones: Bones) -> None:
             nodes.raw[i]["name"] = names[i]
 
 
-def _bounds(
-    document: Document, nodes: Nodes, meshes: Iterable[int]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+def _bounds(document: Document, nodes: Nodes, meshes: list[int]) -> tuple[NDArray, NDArray] | None:
     """Return the lowest and highest coordinates of meshes in the scene."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for i in meshes:

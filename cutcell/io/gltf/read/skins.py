@@ -75,17 +75,10 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
     number = {node: k for k, node in enumerate(joints)} | {-1: -1}
     above = [nodes.parents[node] for node in joints]
     relative = np.concatenate([nodes.relative_to(joints), np.eye(4)[None]])
-    return BoundSkin(
-        inverse,
-        shares,
-        nodes.world[joints],
-        relative[above] @ nodes.local[joints],
-        [number[nearest[node]] for node in above],
-        np.argsort(nodes.depth[joints], kind="stable").tolist(),
-        corners,
-        joints,
-        has_binds,
-    )
+    relative, world = relative[above] @ nodes.local[joints], nodes.world[joints]
+    parents = [number[nearest[node]] for node in above]
+    order = np.argsort(nodes.depth[joints], kind="stable").tolist()
+    return BoundSkin(inverse, shares, world, relative, parents, order, corners, joints, has_binds)
 
 
 def _vertices(
