@@ -160,12 +160,11 @@ def read_rig(
 def read_bare(document: Document, nodes: Nodes, why: str = "") -> Rig:
     """Return the scene's meshes as a rig without joints; `why` is said where that surprises."""
     shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node]
-    shown = [i for i in nodes.in_scene() if i in set(shown)] or shown
-    drawn = {
-        i: read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[1]
-        for i in shown
-    }
-    placed = {i: nodes.world[i] for i in shown if len(drawn[i])}
+    shown = sorted(set(shown) & set(nodes.in_scene())) or shown
+    placed = {}
+    for i in shown:
+        if len(read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[1]):
+            placed[i] = nodes.world[i]
     if not placed:
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)

@@ -39,12 +39,11 @@ def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, 
     """Return skins, with other matrices where those of the file contradict the nodes."""
     in_scene = set(nodes.in_scene())
     stored = {}
-    for skin in skins:
-        users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
-        users = [i for i in users if i in in_scene] or users
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            stored[skin] = _read_skin(document, nodes, skin, users)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for skin in skins:
+            users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
+            users = [i for i in users if i in in_scene] or users
+            stored[skin] = _read_skin(document, nodes, skin, users)
         mend([one for one in stored.values() if one.has_binds])
     for skin, one in stored.items():
         bad = np.flatnonzero(~invertible(one.inverse))
