@@ -16,7 +16,7 @@ from .files import naming
 from .gltf.container import Document, malformed
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
-from .gltf.read.added_skins import has_volume, moved
+from .gltf.read.added_skins import has_volume
 from .gltf.read.bones import find_bones
 from .gltf.read.clips import read_clips
 from .gltf.read.compressed import plain_document
@@ -66,7 +66,7 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
 
 def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
     """Return a skeleton moved by a matrix (4, 4)."""
-    joints, turned = moved(skeleton.joints, world), skeleton.orientations
+    joints, turned = skeleton.joints @ world[:3, :3].T + world[:3, 3], skeleton.orientations
     if turned is not None:
         left, _, right = np.linalg.svd(world[:3, :3])
         turned = left @ right @ turned

@@ -86,8 +86,7 @@ def _complete(normals: NDArray, vertices: NDArray, faces: NDArray) -> NDArray[np
 def vertex_normals(vertices: NDArray, faces: NDArray) -> NDArray[np.float32]:
     """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
     area = face_normals(vertices[faces].astype(float))
-    _, same = np.unique(vertices, axis=0, return_inverse=True)
-    same = same.reshape(-1)
+    same = np.unique(vertices, axis=0, return_inverse=True)[1].reshape(-1)
     summed = np.zeros((same.max() + 1, 3))
     for k in range(3):
         np.add.at(summed, same[faces[:, k]], area)

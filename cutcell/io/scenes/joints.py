@@ -136,7 +136,8 @@ def _bound(
 def _unbound(
     scene: Mapping[str, NDArray], parents: list[int], world: NDArray, bones: list[int]
 ) -> dict[int, SceneSkin]:
-    able = [(bone, inverse) for bone in bones for inverse, ok in [_inverse(world[bone])] if ok]
+    inverses = [(bone, *_inverse(world[bone])) for bone in bones]
+    able = [(bone, inverse) for bone, inverse, solvable in inverses if solvable]
     places = scene["mesh_nodes"].tolist()
     free = [k for k, node in enumerate(places) if not set(_above(node, parents)) & set(bones)]
     skins = {}
