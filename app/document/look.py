@@ -1,5 +1,7 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
+from typing import Any
+
 from cutcell_viewers.camera import Camera, framing
 
 from ..features.brush.choices import BRUSH
@@ -17,10 +19,7 @@ def watch(session: Session) -> None:
     state.param.watch(lambda *events: show(session), watched)
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
-    view.listen(
-        "pick-vertex",
-        lambda message: pick_vertex(session, int(message["vertex"]), int(message.get("view", 0))),
-    )
+    view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
     view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
     state.param.watch(
         lambda *events: pick_node(session, None),
@@ -55,6 +54,10 @@ def pick_vertex(session: Session, vertex: int | None, view: int = 0) -> None:
         return
     method = state.methods[view] if 0 <= view < len(state.methods) else ""
     state.param.update(vertex=vertex, node=None, clicked_method=method)
+
+
+def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
+    pick_vertex(session, int(message["vertex"]), int(message.get("view", 0)))
 
 
 def set_camera(session: Session, camera: Camera | None) -> None:
