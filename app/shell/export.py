@@ -23,7 +23,6 @@ from cutcell_viewers.process import draw_isolated
 from ..derive.jobs import COMPUTING, DRAWING, Slots
 from ..derive.processes import in_process
 from ..document.session import Session
-from ..document.state import State
 from ..features.pose.scene import chosen_clip, clip_of
 from ..features.scenes import Memo, following, resolve
 from ..features.sweep import sweep_of, sweep_scenes
