@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
+from .checks import assign
 from .transforms import composed, relative
 
 
@@ -101,8 +102,7 @@ class Clip(Derived):
         framed = times is not None and transforms is not None
         if framed == (motion is not None) or (times is None) != (transforms is None):
             raise ParameterError("a clip needs times and transforms, or else a motion")
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "motion", motion or Frames(times, transforms))  # type: ignore[arg-type]
+        assign(self, name=name, motion=motion or Frames(times, transforms))  # type: ignore[arg-type]
 
     @property
     def transforms(self) -> NDArray[np.float64]:
