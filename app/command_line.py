@@ -30,8 +30,7 @@ def open_page(
     port: Annotated[
         int,
         typer.Option(
-            "--port",
-            help="Port of the page; the next free one if it is taken, any free one if 0.",
+            "--port", help="Port of the page; the next free one if it is taken, any free one if 0."
         ),
     ] = 5006,
     address: Annotated[

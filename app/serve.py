@@ -1,6 +1,7 @@
 """The server of the page."""
 
 import errno
+import secrets
 import signal
 import socket
 import sys
@@ -14,6 +15,7 @@ import panel as pn
 import panel_material_ui  # noqa: F401  registers its components before a page is served
 from bokeh.settings import settings
 from bokeh.util.browser import view
+from tornado.httpserver import HTTPServer
 
 from cutcell.cli.console import print_warnings
 from cutcell.weights.warm_up import is_compiled, start_process, warm_up
@@ -25,6 +27,7 @@ from .features.learn.checked import read_checked
 from .features.learn.lesson import Lesson
 from .features.pairs.choices import OpenedAudit
 from .files.upload_cache import UPLOADS
+from .server.connections import LimitedServer
 from .server.frames import check_origins
 from .server.handlers import guard
 from .server.log import log_to_terminal
@@ -37,6 +40,9 @@ PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
 MAX_BODY = 64 * 1024
 """Bytes of a request's body; uploads use the websocket."""
+TIMEOUTS = {"idle_connection_timeout": 75, "body_timeout": 30}
+"""Seconds for the headers of a request, or until the next one, and for its body. Proxies reuse a
+connection for 60 s, as a rule."""
 LOCAL = ("localhost", "127.0.0.1", "::1")
 
 ENDINGS = {
@@ -144,12 +150,15 @@ def begin(
     Further arguments are those of `panel.serve`.
     """
     leave_none_behind()
+    HTTPServer.configure(LimitedServer)
     server = pn.serve(
         {"/": lambda: page(path, opened, actors, lesson)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,
-        http_server_kwargs={"max_body_size": MAX_BODY},
+        http_server_kwargs={"max_body_size": MAX_BODY, **TIMEOUTS},
+        sign_sessions=True,
+        secret_key=secrets.token_bytes(32),
         title="cutcell",
         show=False,
         start=False,
@@ -157,6 +166,7 @@ def begin(
         threaded=False,
         **{**ENDINGS, **more},
     )
+    HTTPServer.configure(None)  # of other servers in this process
     text = guard(server._tornado, allowed_hosts(address, port), STATIC, head(), frames)
     server.io_loop.add_callback(lambda: text.text)
     server.io_loop.add_callback(_settle, server)

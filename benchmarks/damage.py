@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from cutcell.io.gltf.read.accessors import find_accessor
 from cutcell.io.gltf.read.primitives import influence_sets
 from cutcell.io.gltf.read.read import GltfSource
 from cutcell_lab.benchmarks.rigs import SHARED
+from tests.bars import legs
 
 LEAK = 0.3
 """Part of a joint's weight that leaks to another one."""
@@ -38,11 +40,14 @@ class Damage:
         Takes the rig, and returns damaged weights (n, j).
     accessories : bool
         Whether meshes on a joint become part of the skin first.
+    build : callable, optional
+        Makes the character, where there is no file of it.
     """
 
     path: str
     make: Callable[[Rig], Weights]
     accessories: bool = False
+    build: Callable[[], Rig] | None = None
 
     @property
     def file(self) -> Path:
@@ -51,7 +56,17 @@ class Damage:
 
     def load(self) -> Rig:
         """Load the character, undamaged."""
+        if self.build is not None:
+            return saved_and_loaded(self.build())
         return cutcell.load(self.file, accessories=self.accessories)
+
+
+def saved_and_loaded(rig: Rig) -> Rig:
+    """Return a rig as its GLB has it."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "built.glb")
+        cutcell.save(path, rig)
+        return cutcell.load(path)
 
 
 def damaged_vertices(before: Weights, after: Weights) -> NDArray[np.intp]:
@@ -182,6 +197,9 @@ DAMAGES = {
     "finger": Damage(
         "wild/godot_mannequiny.glb",
         lambda rig: shifted(rig, FINGER, [name.replace("index", "middle") for name in FINGER]),
+    ),
+    "twist": Damage(
+        "made-up legs of Auto-Rig Pro", lambda rig: noisy(rig, "thigh_twist.l"), build=legs
     ),
 }
 """Damage by its name."""

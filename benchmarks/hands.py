@@ -38,11 +38,6 @@ class Hands:
         """Press a button."""
         self._click(self.page.get_by_role("button", name=name, exact=exact))
 
-    def base_from_file(self) -> None:
-        """Let the layers begin from the file's weights, on the panel Weights."""
-        self.section("Layers")
-        self.press("From file")
-
     def choose(self, label: str, option: str) -> None:
         """Take an option of a list."""
         self._acts(lambda: self.visit.choose(label, option))

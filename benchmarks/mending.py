@@ -11,6 +11,7 @@ bytes of a vertex that was not damaged. `--write` puts the table into docs/page/
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -35,7 +36,7 @@ from .hands import Hands
 DOCUMENT = ROOT / "docs" / "page" / "check.md"
 FIRST = ROOT / "assets" / "robot.glb"
 ADDRESS = "/?resolution=32&graph_resolution=0"
-"""Computed weights lie under the file's and are not exported: coarse ones are soon there."""
+"""A file opens with its own weights: coarse computed ones are soon there."""
 PIXELS = 0.2
 """Pixels of the canvas to one of the page: nothing is done in the scene."""
 MAX_ACTIONS = 10
@@ -47,15 +48,12 @@ def _attach_by_finding(hands: Hands, joint: str) -> None:
     """Attach the part that Check finds far from its joint to the nearest joint."""
     hands.panel("Check")
     hands.press("Parts that follow a far joint")
-    hands.press(f"Rigid to {joint}")
-    hands.panel("Weights")
-    hands.base_from_file()
+    hands.press(re.compile(f"^Part \\d+: rigid to {joint}"))
 
 
 def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None = None) -> None:
     """Choose a part of the mesh, and bind it in another way."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.section("Parts of the mesh")
     hands.part(*words)
     hands.choose("Bind this part", way)
@@ -66,7 +64,6 @@ def _bind_part(hands: Hands, words: Sequence[str], way: str, joint: str | None =
 def _change_selection(hands: Hands, bone: str, selection: str, change: str) -> None:
     """Select vertices by a bone, and change their weights."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.choose("Bone", bone)
     hands.section("Selection")
     hands.menu("Select by", selection)
@@ -76,7 +73,6 @@ def _change_selection(hands: Hands, bone: str, selection: str, change: str) -> N
 def _remove_leak(hands: Hands) -> None:
     """Remove the weight of the hand from the thigh; the others share it as before."""
     hands.panel("Weights")
-    hands.base_from_file()
     hands.choose("Bone", "Hand.L")
     hands.section("Selection")
     hands.type("Vertices where", 'weight of "Hand.L" > 0 and weight of "UpperLeg.L" > 0')
@@ -90,9 +86,7 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     "noise": lambda hands: _change_selection(
         hands, "FrontLowerLeg.L", "Vertices of the bone", "Take the right side"
     ),
-    "wrong eye": lambda hands: _bind_part(
-        hands, ["eyes", "LeftArm"], "Rigid, to one joint", "Head"
-    ),
+    "wrong eye": lambda hands: _attach_by_finding(hands, "Head"),
     "cape": lambda hands: _bind_part(hands, ["Knight_Cape"], "Rigid, to one joint", "chest"),
     "blade": lambda hands: _bind_part(
         hands, ["Knife", "upperleg.r"], "With the body it touches"
@@ -102,6 +96,9 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     ),
     "finger": lambda hands: _change_selection(
         hands, "hand.l", "Bone and its children", "Take the right side"
+    ),
+    "twist": lambda hands: _change_selection(
+        hands, "thigh_twist.l", "Vertices of the bone", "Take the right side"
     ),
 }  # fmt: skip
 """What a person does for each kind of damage."""

@@ -15,8 +15,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import psutil
-from bokeh.util.token import generate_jwt_token, generate_session_id
-from tornado.httpclient import HTTPRequest
+from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from cutcell_lab.benchmarks.rigs import ROOT
@@ -113,11 +112,13 @@ class Visitor:
         self._listening.result(10)
 
     async def _connect(self, address: str, query: str) -> WebSocketClientConnection:
-        payload = {"arguments": _arguments(query)}
-        token = generate_jwt_token(generate_session_id(), extra_payload=payload)
         end = time.monotonic() + PATIENCE
         while True:
             try:
+                page = await AsyncHTTPClient().fetch(
+                    f"{address}/{query}", request_timeout=PATIENCE, connect_timeout=PATIENCE
+                )
+                token = token_of(page.body.decode())
                 return await websocket_connect(
                     HTTPRequest(
                         address.replace("http", "ws") + "/ws",
@@ -156,10 +157,12 @@ class Visitor:
         self._send("PATCH-DOC", {"events": [message]})
 
 
-def _arguments(query: str) -> dict[str, list[str]]:
-    from urllib.parse import parse_qs
-
-    return parse_qs(query.lstrip("?"))
+def token_of(page: str) -> str:
+    """Return the token in the text of the page."""
+    match = re.search(r'"token":"([^"]+)"', page.replace("&quot;", '"'))
+    if not match:
+        raise RuntimeError("there is no token on the page")
+    return match.group(1)
 
 
 _LOOPS: list[asyncio.AbstractEventLoop] = []

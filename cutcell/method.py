@@ -106,11 +106,12 @@ class Method:
         R, lattice cells along the mesh's longest side, 2 to 1024.
     connectivity : {6, 26, "any"}
         Directions of paths inside. 6: along the axes, as in the paper. 26: along the diagonals of
-        lattice cells, too. "any": at any angle, so that distances converge to geodesic ones.
+        lattice cells, too. "any": at any angle, so that distances converge to geodesic ones. Voids
+        of hollow bodies stay empty with 6, as in the paper; else they are filled.
     winding_threshold : float
         tau: what has at least this winding number is inside; more than 0 and less than 1.
     orient : bool
-        Flip inverted faces first.
+        Flip inverted faces first, and count faces once that lie on their own reverse side.
     samples : int
         N, points on each bone that distances start from, 1 to 1000.
     leaf : {"fit", "point", "extend"}, optional

@@ -40,6 +40,23 @@ def bar(nx=20, joints=3):
     return Rig(TriangleMesh(vertices, faces), skeleton)
 
 
+def side_by_side(alone):
+    """Put two of a rig side by side, which share no joint."""
+    count, joints = len(alone.mesh.vertices), len(alone.skeleton.joints)
+    aside = np.array([1.2 * np.ptp(alone.mesh.vertices, axis=0)[0], 0, 0])
+    mesh = TriangleMesh(
+        np.vstack([alone.mesh.vertices, alone.mesh.vertices + aside]),
+        np.vstack([alone.mesh.faces, alone.mesh.faces + count]),
+    )
+    parents = alone.skeleton.parents
+    skeleton = Skeleton(
+        np.vstack([alone.skeleton.joints, alone.skeleton.joints + aside]),
+        np.concatenate([parents, np.where(parents < 0, -1, parents + joints)]),
+        deform=np.tile(alone.skeleton.deform, 2),
+    )
+    return Rig(mesh, skeleton, allowed=np.kron(np.eye(2), np.ones((count, joints))) > 0)
+
+
 def surface_of(ticks, solid):
     """Make the surface of the solid cells of a grid; `ticks` are its planes along each axis."""
     filled = np.pad(solid, 1)
@@ -87,3 +104,29 @@ def check_weights(rig, found):
     np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-9)
     assert not found.weights[:, ~rig.skeleton.deform].any()
     assert all(value >= 0 for value in found.seconds.values())
+
+
+def legs():
+    """Return two legs, mirrored, in each a twist bone and an IK control at one place."""
+    vertices, faces = grid_box(8)
+    vertices = vertices * [0.4, 1, 1] + [0.3, 0, 0]
+    flipped = vertices * [-1, 1, 1]
+    mesh = TriangleMesh(
+        np.vstack([vertices, flipped]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
+    )
+    x, middle = 0.5, vertices[:, 1:].mean(axis=0)
+    names, joints, parents = ["root"], [[0, *middle]], [-1]
+    for side, sign in (("l", 1), ("r", -1)):
+        controls = [f"c_thigh_ik.{side}", f"thigh_twist.{side}"]
+        names += controls if side == "r" else controls[::-1]
+        names += [f"shin.{side}"]
+        joints += [[sign * x, *middle], [sign * x, *middle], [sign * (x + 0.1), *middle]]
+        parents += [0, 0, names.index(f"thigh_twist.{side}")]
+    deform = [not name.startswith("c_") for name in names]
+    random = np.random.default_rng(5)
+    rows, count = random.dirichlet(np.ones(3), len(vertices)), len(vertices)
+    weights = np.zeros((2 * count, len(names)))
+    for side, which in (("l", slice(count)), ("r", slice(count, None))):
+        for column, name in enumerate(("root", f"thigh_twist.{side}", f"shin.{side}")):
+            weights[which, names.index(name)] = rows[:, column]
+    return Rig(mesh, Skeleton(np.array(joints), parents, names, deform=deform), weights)

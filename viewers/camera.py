@@ -26,6 +26,8 @@ class Camera:
 
 FRONT = (0.42, 0.16, 1.0)
 """Direction of the first view: from the front, a little aside and above."""
+NARROW = 0.4
+"""Smallest front of a box, relative to its largest side, that is looked at first."""
 
 
 def framing(
@@ -41,17 +43,31 @@ def framing(
     aspect : float
         Width over height of the picture.
     direction : tuple of float, optional
-        From the box to the eye, not vertical; `FRONT` by default.
+        From the box to the eye, not vertical; see `first_direction` for the default.
     """
     low, high = np.asarray(bounds, float)
     centre = (low + high) / 2
-    right, up, toward = across(direction or FRONT)
+    right, up, toward = across(direction or first_direction(high - low))
     corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
     slope = np.tan(np.radians(VIEW_ANGLE / 2))
     needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
     distance = 1.08 * (needed + corners @ toward).max()
     position = centre + distance * toward
     return Camera(tuple(position.tolist()), tuple(centre.tolist()))
+
+
+def first_direction(size: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return the direction of the first view of a box: `FRONT`, unless its front is narrow.
+
+    The largest side of a long or flat one is seen: that of a fish, the top of a butterfly.
+    """
+    x, y, z = size
+    front, largest = x * y, max(x * y, y * z, x * z)
+    if front >= NARROW * largest:
+        return FRONT
+    aside, above, ahead = FRONT
+    above = ahead if x * z == largest else above
+    return (aside, above, ahead) if x >= z else (ahead, above, aside)
 
 
 def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:

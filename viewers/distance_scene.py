@@ -56,7 +56,7 @@ def distance_colors(
     if unreached:
         legend = replace(legend, swatches=((UNREACHED, "no path leads there"),))
     name = short_names(rig.skeleton.names)[joint]
-    reading = Reading(f"from {name}: ", unit=longest_side(rig))
+    reading = Reading(f"from {name} in {unit_of(rig)}: ", unit=longest_side(rig))
     return {**style, "reading": reading}, legend
 
 
@@ -88,14 +88,19 @@ def shown_distance(distance: ArrayLike, limits: tuple[float, float]) -> NDArray[
 def distance_legend(rig: Rig, joint: int, limits: tuple[float, float]) -> Legend:
     """Return the legend of one joint's distance field; limits are in longest sides."""
     name = short_names(rig.skeleton.names)[joint]
-    high = f"{file_units(limits[1], rig)} in the file's units"
-    return Legend(f"Distance from {name}", "distance", "0", high)
+    return Legend(f"Distance from {name}", "distance", "0", file_units(limits[1], rig))
 
 
 def file_units(length: float, rig: Rig) -> str:
-    """Return a length in longest sides of the mesh, written in the file's units."""
+    """Return a length in longest sides of the mesh, written in the file's units with their name."""
     in_file = length * longest_side(rig)
-    return f"{in_file:{'.3g' if in_file < 1000 else '.0f'}}"
+    return f"{in_file:{'.3g' if in_file < 1000 else '.0f'}} {unit_of(rig)}"
+
+
+def unit_of(rig: Rig) -> str:
+    """Return the name of the file's units: metres where a glTF scene does not scale the mesh."""
+    scale = np.linalg.norm(rig.world[:3, :3], axis=0)
+    return "m" if rig.source is not None and np.allclose(scale, 1, rtol=1e-3) else "units"
 
 
 def longest_side(rig: Rig) -> float:

@@ -22,6 +22,7 @@ from cutcell.method import Method
 from cutcell.rig import Rig
 
 from .character import to_scene
+from .distance_scene import unit_of
 from .slice_scene import file_axis, slice_place
 
 MAX_NODES = 2000
@@ -95,7 +96,8 @@ class FlatSection:
         return {
             "resolution": graph.lattice.resolution,
             "tau": graph.winding_threshold,
-            "size": graph.lattice.size * float(np.linalg.norm(self.rig.world[:3, 0])),
+            "size": graph.lattice.size,
+            "unit": unit_of(self.rig),
             "box": box.round(DIGITS).ravel().tolist(),
             "frame": self._frame(),
             "outline": outline.reshape(-1, 4).round(DIGITS).tolist(),

@@ -24,7 +24,8 @@ def without_prefix(names: Sequence[str]) -> list[str]:
     shared = [start for start, count in counts.items() if count >= max(3, 0.8 * len(set(names)))]
     prefix = max(shared, key=len, default="")
     rests = [name.removeprefix(prefix) for name in names]
-    if not prefix or not all(len(rest) > 1 and rest[0].isalpha() for rest in rests):
+    changed = [rest for rest, name in zip(rests, names, strict=True) if rest != name]
+    if not prefix or not all(len(rest) > 1 and rest[0].isalpha() for rest in changed):
         return list(names)
     times = Counter(rests)
     return [rest if times[rest] == 1 else name for name, rest in zip(names, rests, strict=True)]

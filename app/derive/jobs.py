@@ -25,13 +25,7 @@ MAX_UNRESPONSIVE = 3
 
 
 class Slots:
-    """Limit of the jobs of one kind that run at once, over all sessions.
-
-    Parameters
-    ----------
-    places : int
-        Largest number of jobs.
-    """
+    """Limit of how many jobs of one kind run at once, over all sessions."""
 
     def __init__(self, places: int = 1) -> None:
         self._places = places
@@ -86,13 +80,7 @@ def on_its_thread(document: Any, loop: Any) -> Schedule:
 
     `document.add_next_tick_callback` alone will not do: called from another thread in the very
     moment in which the document lets go of the changes that it held together, it is put with
-    them, and waits until something else is changed.
-
-    Parameters
-    ----------
-    document : bokeh.document.Document
-    loop : tornado.ioloop.IOLoop
-        That of the document's thread.
+    them, and waits until something else is changed. `loop` is that of the document's thread.
     """
 
     def add(action: Callable[[], Any]) -> None:
@@ -106,11 +94,6 @@ class Gate:
     """Holds scheduled actions back until a page is there to show what they do.
 
     Changes while a browser is still loading may arrive in the wrong order.
-
-    Parameters
-    ----------
-    schedule : callable
-        What to schedule with once the gate is open.
     """
 
     def __init__(self, schedule: Schedule) -> None:

@@ -43,11 +43,8 @@ if _METHOD == "forkserver":
 def get_ready(make_folder: Callable[[], Path]) -> None:
     """Start what processes are started by, before the first is needed.
 
-    Parameters
-    ----------
-    make_folder : callable
-        Makes a folder for its socket. The one that Python makes itself stays for ever where this
-        process is killed.
+    `make_folder` makes a folder for its socket. The one that Python makes itself stays for ever
+    where this process is killed.
     """
     if _METHOD == "forkserver":
         from multiprocessing.forkserver import ensure_running

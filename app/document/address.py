@@ -7,8 +7,6 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
-from cutcell.editing import Edits
-
 from ..features.brush.choices import BRUSH
 from ..features.compare.choices import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, standard
 from ..features.disagreement.choices import settled_of
@@ -46,8 +44,9 @@ def snapshot(state: State) -> dict[str, Any]:
 def defaults(state: State) -> dict[str, Any]:
     """Return the initial choices without panel, bone and clip."""
     plain = {name: p.default for name, p in simple(state).items() if name != "panel"}
-    return {**plain, "turns": {}, "methods": standard(state.rig), **dict.fromkeys(SINGLE, ""),
-            "settled": (), "edits": Edits()}  # fmt: skip
+    methods = standard(state.rig, state.opening.base)
+    return {**plain, "turns": {}, "methods": methods, **dict.fromkeys(SINGLE, ""),
+            "settled": (), "edits": state.first_edits}  # fmt: skip
 
 
 def to_query(
@@ -68,7 +67,9 @@ def to_query(
         "vertex": None if rig is None else state.vertex,
         **{n: _text(v) for n, default in plain.items() if (v := getattr(state, n)) != default},
         "clip": None if state.clip == first_clip(rig) else state.clip,
-        "methods": None if state.methods == standard(rig) else ",".join(state.methods),
+        "methods": None
+        if state.methods == standard(rig, state.opening.base)
+        else ",".join(state.methods),
         **{n: getattr(state, n) or None for n in SINGLE},
         "settled": ",".join(state.settled) or None,
         "turns": ";".join(f"{j}:{text}" for j, text in angles.items()) or None,
@@ -85,14 +86,8 @@ def to_query(
 def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Read an address.
 
-    Returns
-    -------
-    choices : dict
-        Values for the state's parameters that need no character.
-    arrival : dict
-        The entries of `READERS` that the address has.
-    problems : list of str
-        Entries that could not be read.
+    Returns values of parameters that need no character, the entries of `READERS` that the address
+    has, and the entries that could not be read.
     """
     current = simple(state)
     choices: dict[str, Any] = {}

@@ -45,12 +45,7 @@ def show_first_demo(session: Session, demo: str) -> None:
 def choose(session: Session, query: str, first: str = "") -> None:
     """Choose what an address says, before any character is there.
 
-    Parameters
-    ----------
-    session : Session
-    query : str
-    first : str
-        The demo that is to come where it says nothing of that; empty for none.
+    `first` is the demo that is to come where the address names none; empty for none.
     """
     state = session.state
     choices, arrival, _ = from_query(with_scene(query, state), state)
@@ -62,15 +57,7 @@ def choose(session: Session, query: str, first: str = "") -> None:
 
 
 def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
-    """Show what an address says.
-
-    Parameters
-    ----------
-    session : Session
-    query : str
-    otherwise : callable
-        Loads a character where the address names none that exists.
-    """
+    """Show what an address says; `fallback` loads a character where it names none that exists."""
     choices, arrival, problems = from_query(with_scene(query, session.state), session.state)
     session.state.param.update(**choices)
     session.arrival = arrival

@@ -12,13 +12,7 @@ STEPS = 200
 
 
 class History:
-    """The choices that a person can go back to.
-
-    Parameters
-    ----------
-    now : dict
-        What is chosen at first.
-    """
+    """The choices that a person can go back to; `now` is what is chosen at first."""
 
     def __init__(self, now: Choices) -> None:
         self._now = now

@@ -18,7 +18,7 @@ from cutcell_viewers.camera import Camera, framing
 from ..derive.jobs import READING
 from ..features.character import bounds_of, camera_part, first_joint
 from ..features.compare.results import carry
-from ..features.correct.choices import applied, changes, same_structure
+from ..features.correct.choices import changes, same_structure
 from ..features.correct.commands import edited_state
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
@@ -39,14 +39,7 @@ def load_demo(
 ) -> None:
     """Show a demo character and bind it.
 
-    Parameters
-    ----------
-    session : Session
-    id : str
-    chosen : callable
-        Chooses more, together with the character.
-    then : callable
-        Called when the character is open.
+    `chosen` chooses more, together with the character; `then` is called when it is open.
     """
     session.state.demo = id
     title = next(demo.title for demo in DEMOS if demo.id == id)
@@ -62,22 +55,11 @@ def load_demo(
 
 
 def load_files(
-    session: Session,
-    paths: list[Path],
-    key: str = "",
-    chosen: Callable[[], None] = lambda: None,
+    session: Session, paths: list[Path], key: str = "", chosen: Callable[[], None] = lambda: None
 ) -> None:
-    """Show the character in some files, and bind it.
+    """Show the character in some files, and bind it; `chosen` chooses more, together with it.
 
-    Parameters
-    ----------
-    session : Session
-    paths : list of Path
-        The file, and those that belong to it.
-    key : str
-        That of uploaded files; see `UploadCache`. Without one they are files of this machine.
-    chosen : callable
-        Chooses more, together with the character.
+    Without a key, see `UploadCache`, they are files of this machine.
     """
     uploads = session.uploads
     if not key:
@@ -108,16 +90,7 @@ def load_upload(session: Session, group: Group) -> None:
 
 
 def load_again(session: Session, character: str, chosen: Callable[[], None] = lambda: None) -> None:
-    """Show a character that was open before.
-
-    Parameters
-    ----------
-    session : Session
-    character : str
-        Its `Session.character`.
-    chosen : callable
-        Chooses more, together with the character.
-    """
+    """Show a character that was open before, by its `Session.character`."""
     kind, _, demo = character.partition(" ")
     if kind == "demo":
         load_demo(session, demo, chosen)
@@ -158,7 +131,7 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
     state, plain = session.state, history.plain(choices)
     edits: Edits = choices.get("edits") or state.edits
     own = choices.get("own") or state.own
-    rig = choices.get("rig") or applied(own, edits)
+    rig = choices.get("rig") or edited_rig(own, edits)
     changed: dict[str, Any] = {"rig": rig}
     if not same_structure(rig, state.rig):
         changed = changes(state, rig, edits)
@@ -179,27 +152,19 @@ def receiver(session: Session) -> Receiver:
 def show_rig(
     session: Session, rig: Rig, chosen: Callable[[], None] = lambda: None, character: str = ""
 ) -> None:
-    """Show a character that is loaded already, and bind it.
-
-    Parameters
-    ----------
-    session : Session
-    rig : Rig
-    chosen : callable
-        Chooses more, together with the character.
-    character : str
-        See `Session.character`.
-    """
+    """Show a character that is loaded already, and bind it; `chosen` chooses more with it."""
     state, view = session.state, session.view
     old, session.character = session.character, character
     edits, problem = edits_in(rig)
+    if not edits and rig.weights is not None and character.startswith("~"):
+        edits = Edits(base="file")  # a person's own file is to be mended, a demo to be computed
     before, arrival, session.arrival = state.rig, session.arrival, {}
     # All at once: a menu whose value changes twice in a moment may tell the first one back.
     with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, turns={}, moving=False,
             playing=False, repair=None, edits=replace(edits, method={}), part=None, brush=False,
-            layer=None,
+            layer=None, opening=edits,
             joint_handle=False,
             own=rig,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
@@ -274,7 +239,7 @@ def _correct(session: Session, text: str) -> None:
                 changed["joint"] = first_joint(changed["rig"])
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:
-        state.edits = Edits()
+        state.edits = state.first_edits
         text = f"The edits of this address were not applied: {error}"
         session.notice = ("info", text)
 

@@ -62,12 +62,10 @@ def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
 
 def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
-    view = session.view
-    home = camera_part(framing(bounds_of(session.state), 1.2))
-    if camera is not None:
-        view.camera, view.at_home = camera, False
-        home["now"] = camera_part(camera)
-    view.send(camera=home)
+    view, home = session.view, framing(bounds_of(session.state), 1.2)
+    view.camera, view.at_home = camera or home, camera is None
+    now = {} if camera is None else {"now": camera_part(camera)}
+    view.send(camera={**camera_part(home), **now})
 
 
 def show(session: Session) -> None:

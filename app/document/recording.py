@@ -1,5 +1,6 @@
 """Undo and redo of choices, and the address of the present ones."""
 
+import re
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,7 @@ from .address import NOTED, simple, snapshot, to_query
 from .history import History
 from .session import Session
 
+OF_STEP = re.compile(r"&(?:step|answer|stage)=[^&]*")
 RESULT = ("rig", "own", "repair")
 """Changes of the result besides the choices: other joints that deform, repaired faces."""
 
@@ -27,11 +29,7 @@ def watch(session: Session) -> None:
 def begin(session: Session, before: str) -> None:
     """Begin the history of a new character, or continue that of one restored by *Back*.
 
-    Parameters
-    ----------
-    session : Session
-    before : str
-        Key of the character that was open; see `Session.character`.
+    `before` is the key of the character that was open; see `Session.character`.
     """
     now = _now(session)
     if session.returning:
@@ -78,21 +76,23 @@ def publish(session: Session) -> None:
     """Send the address, and whether undo and redo are possible, to the view if changed."""
     if session.state.rig is None:
         return
+    text, step, panel = query(session), session.state.lesson_step, session.state.panel
     message = {
-        "address": "?" + query(session),
+        "address": "?" + text,
+        "link": "?" + (text if step is None or step.shows(panel) else OF_STEP.sub("", text)),
         "able": [session.history.can_undo, session.history.can_redo],
     }
     if {name: session.view.last_sent(name) for name in message} != message:
         session.view.send(**message)
 
 
-def query(session: Session) -> str:
-    """Return what the address says now."""
+def query(session: Session, always_camera: bool = False) -> str:
+    """Return what the address says now; the camera is left out where it is the first one."""
     view, camera = session.view, None
-    if view.camera is not None and not view.at_home:
+    if view.camera is not None and (always_camera or not view.at_home):
         camera = [*view.camera.position, *view.camera.focal_point]
     try:
-        edits = session.edits_file.text_of(session.state.edits)
+        edits = session.edits_file.text_of(session.state.edits, session.state.opening)
     except (CutcellError, OSError) as error:
         session.fail(error)
         edits = ""

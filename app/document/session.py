@@ -86,7 +86,7 @@ class Session:
     returning : bool
         Whether that character is shown because somebody went back to it.
     before_lesson : tuple or None
-        The history, the choices and the camera from before the lesson.
+        The history, the choices, the camera and the tools from before the lesson.
     arrival : dict
         Choices of the address for the character that is being loaded.
     computed : tuple or None
@@ -113,7 +113,7 @@ class Session:
         self.character = ""
         self.paths: list[Path] | None = None
         self.returning = False
-        self.before_lesson: tuple[History, dict[str, Any], Camera | None] | None = None
+        self.before_lesson: tuple[Any, ...] | None = None
         self.arrival: dict[str, Any] = {}
         self.computed: tuple[Any, dict[str, Any], Edits] | None = None
         self.notice: tuple[str, str] | None = None

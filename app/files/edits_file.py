@@ -25,11 +25,15 @@ class EditsFile:
         self._key = ""
         self._last_text: tuple[Edits, str] = (Edits(), "")
 
-    def text_of(self, edits: Edits) -> str:
-        """Return edits for an address: all of them, or a key; "" for none."""
+    def text_of(self, edits: Edits, opening: Edits) -> str:
+        """Return edits for an address: all of them, or a key; "" for those of a file just opened.
+
+        Layers that a file holds are always in the address: its settings follow their method else.
+        """
         if edits is not self._last_text[0]:
             few = vertices_named(edits) <= MAX_VERTICES
-            text = to_text(edits) if edits and few else ""
+            is_new = edits != opening or bool(opening.layers)
+            text = to_text(edits) if is_new and few else ""
             if not few or len(text) > MAX_IN_ADDRESS:
                 self._last_text = (edits, "")  # do not try again after an error
                 text = self._store(edits)
@@ -71,7 +75,7 @@ class EditsFile:
             self._uploads.cache.leave(old.key)
         group = self._uploads.cache.begin(len(content), self._uploads)
         path = group.folder / "edits.json"
-        path.write_bytes(content)
+        group.written = path.write_bytes(content)
         group.paths = [path]
         self._group = group
         return KEY + group.key

@@ -36,7 +36,6 @@ class Receiver:
         self._refused = refused
         self._group: Group | None = None
         self._sizes: list[int] = []
-        self._written = 0
 
     def answer(self, message: dict[str, Any]) -> dict[str, Any] | None:
         """Handle a message and return the answer, also after an error; None for other messages."""
@@ -68,7 +67,7 @@ class Receiver:
         names, sizes = _announced(message["files"])
         group = self._group = self._cache.begin(sum(sizes), self._owner)
         group.paths = [group.folder / name for name in names]
-        self._sizes, self._written = sizes, 0
+        self._sizes = sizes
         for path in group.paths:
             path.touch()
 
@@ -76,13 +75,14 @@ class Receiver:
         index, data = int(message["index"]), message["data"]
         if not isinstance(data, bytes | bytearray | memoryview):
             raise TypeError("a piece of a file must be bytes")
-        if self._group is None or not 0 <= index < len(self._sizes):
+        group = self._group
+        if group is None or not 0 <= index < len(self._sizes):
             raise FileError("a piece of a file came that nothing had announced; try again")
-        self._written += len(data)
-        if self._written > sum(self._sizes):
+        if group.written + len(data) > group.size:
             raise FileError("more came than was announced; try again")
-        with self._group.paths[index].open("ab") as file:
+        with group.paths[index].open("ab") as file:
             file.write(data)
+        group.written += len(data)
 
     def _end(self, message: dict[str, Any]) -> None:
         group = self._group

@@ -47,9 +47,12 @@ class Recipe:
     out: str
 
     @property
-    def counts_per_character(self) -> bool:
-        """Whether a resolution on the command line would count along one of several characters."""
-        return method_per_character(self.rig, self.method) != self.method
+    def options(self) -> dict[str, object]:
+        """The fewest options that make the method."""
+        options = options_of(self.method)
+        if method_per_character(self.rig, self.method) != self.method:
+            options = {"resolution": self.method.resolution, **options}  # along the whole mesh
+        return options
 
     @property
     def has_only_base(self) -> bool:
@@ -63,10 +66,7 @@ def script_of(recipe: Recipe) -> str:
     if recipe.demo:
         source = f"demo_path({recipe.demo!r})"
         imported.append("from cutcell_assets import demo_path")
-    options = options_of(recipe.method)
-    if recipe.counts_per_character:
-        options = {"resolution": recipe.method.resolution, **options}
-    arguments = ["rig", *(f"{name}={value!r}" for name, value in options.items())]
+    arguments = ["rig", *(f"{name}={value!r}" for name, value in recipe.options.items())]
     edited = []
     if recipe.edits and recipe.is_layered:
         imported.append("from cutcell.editing.stored import with_base")
@@ -98,7 +98,7 @@ def command_of(recipe: Recipe) -> str:
     words = ["cutcell bind", source, shlex.quote(recipe.out)]
     if recipe.edits:
         return " ".join([*words, "--layers", shlex.quote(recipe.layers)])  # with the method
-    for name, value in options_of(recipe.method).items():
+    for name, value in recipe.options.items():
         flag, _, off = METHOD_OPTIONS[name][2].split()[0].partition("/")
         if isinstance(value, bool):
             words.append(flag if value else off)

@@ -24,12 +24,7 @@ UNKNOWN_SECONDS = 24 * 3600.0
 
 
 class Storage:
-    """Folders for files, inside one that ends with the server; its parent is the temporary folder.
-
-    Parameters
-    ----------
-    parent : Path, optional
-    """
+    """Folders for files, inside one that ends with the server, in the temporary folder."""
 
     def __init__(self, parent: Path | None = None) -> None:
         self._parent = parent

@@ -38,11 +38,7 @@ def settings_of(result: Binding | CutCellGraph) -> dict[str, Any]:
 
 
 def save_numbers(
-    path: str | Path,
-    rig: Rig,
-    *,
-    settings: Mapping[str, Any] | None = None,
-    **tables: ArrayLike,
+    path: str | Path, rig: Rig, *, settings: Mapping[str, Any] | None = None, **tables: ArrayLike
 ) -> None:
     """Save numbers of every vertex and joint.
 

@@ -40,6 +40,8 @@ class Group:
         Bytes of all files, as announced.
     owner : object
         The page that sent them.
+    written : int
+        Bytes that have arrived; the disk keeps room for the others.
     users : int
         Number of pages on which their character is open, or is being opened.
     listed : int
@@ -53,6 +55,7 @@ class Group:
     size: int
     owner: object
     paths: list[Path] = field(default_factory=list)
+    written: int = 0
     users: int = 1
     listed: int = 0
     left: float = 0.0
@@ -155,14 +158,19 @@ class UploadCache:
             raise FileError(
                 f"{_mb(used)} of uploads are in use, of at most {_mb(MAX_BYTES)}; try again later"
             )
-        if self.storage.free() - size < SPARE_BYTES:
+        if self._free() - size < SPARE_BYTES:
             self._make_room(MAX_BYTES, MAX_BYTES)  # all unused files
-        free = self.storage.free()
+        free = self._free()
         if free - size < SPARE_BYTES:
             raise FileError(
-                f"the server's disk has no room for {_mb(size)}: {_mb(free)} are free, and "
+                f"the server's disk has no room for {_mb(size)}: {_mb(max(free, 0))} are free, and "
                 f"{_mb(SPARE_BYTES)} must stay so"
             )
+
+    def _free(self) -> int:
+        """Return how many bytes the disk has left once all that was announced has arrived."""
+        expected = sum(group.size - group.written for group in self._groups.values())
+        return self.storage.free() - expected
 
     def _make_room(self, size: int, most: int, owner: object = None) -> int:
         """Remove unused files, the oldest first, until a size fits; return the size of the rest."""
@@ -190,12 +198,8 @@ class UploadCache:
 class PageUploads:
     """The uploaded files that one page uses.
 
-    Attributes
-    ----------
-    key : str
-        Key of the open character; empty if it was not uploaded.
-    listed : dict of str to str
-        Keys and names of the characters that were opened, in order.
+    `key` is that of the open character, empty if it was not uploaded; `listed` has the keys and
+    names of the characters that were opened, in order.
     """
 
     def __init__(self, cache: UploadCache) -> None:

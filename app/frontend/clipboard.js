@@ -19,7 +19,8 @@ export async function copy(overlay, text, what) {
 }
 
 /** @param {Overlay} overlay */
-export const copyLink = (overlay) => copy(overlay, location.href, "Link")
+export const copyLink = (overlay, link = "") =>
+  copy(overlay, new URL(link || location.search, location.href).href, "Link")
 
 function byHand(overlay, text, what) {
   const rows = text.trimEnd().split("\n").length

@@ -2,12 +2,15 @@
 
 /** @typedef {import("./flat_place.js").FlatPlace} FlatPlace */
 
-import {inFront, isKept, runs, sums} from "./flat_search.js"
+import {inFront, isKept, runs, sumAt} from "./flat_search.js"
 
 export const CORNERS = ["A", "B", "C"]
 const FAINT = 0.16
 const SHOWN_NUMBERS = 10  // of the queue
 const WINDINGS = 11  // colours of winding numbers from 0 to 1
+const LETTERS = 14  // pixels
+const ROUNDS = 4  // of places for a text, each farther away
+const AROUND = [[1, -1], [1, 1], [-1, -1], [-1, 1], [0, -1], [0, 1], [1, 0], [-1, 0]]
 
 export class FlatDrawing {
   /** @param {CanvasRenderingContext2D} context @param {FlatPlace} place */
@@ -27,13 +30,10 @@ export class FlatDrawing {
     c.lineCap = "round"
     c.textBaseline = "middle"
     c.textAlign = "center"
-    this.font(12)
+    c.font = `600 ${LETTERS * scene.zoom}px Roboto, system-ui, sans-serif`
+    this.taken = []  // by texts and the mark: boxes of pixels
     this.lines(scene.data.outline, this.colors.ink, 1.4)
     this[scene.mode]()
-  }
-
-  font(size, weight = 600) {
-    this.context.font = `${weight} ${size * this.scene.zoom}px Roboto, system-ui, sans-serif`
   }
 
   // Segments [x0, y0, x1, y1] of the section.
@@ -63,13 +63,27 @@ export class FlatDrawing {
     return way ? [at, low, at, high] : [low, at, high, at]
   }
 
-  /** @param {string} text @param {number[]} at */
-  text(text, [x, y], color = this.colors.ink, back = this.colors.paper) {
-    const {context: c} = this
-    Object.assign(c, {strokeStyle: back, lineWidth: 4, lineJoin: "round"})
-    c.strokeText(text, x, y)
-    c.fillStyle = color
-    c.fillText(text, x, y)
+  // Writes a text beside a point, on the first of some sides where no other text is; farther away
+  // with a line to the point, or not at all.
+  /** @param {string} text @param {number[]} at @param {number[][]} sides */
+  label(text, [x, y], sides, {gap = 4, color = this.colors.ink} = {}) {
+    const {context: c, colors, scene, place: {free}} = this
+    const [width, height] = [c.measureText(text).width + 6, 1.3 * LETTERS * scene.zoom]
+    const places = Array.from({length: ROUNDS}, (_, round) => sides.map(([right, down]) =>
+      [right, down].map((side, i) => side * ([width, height][i] / 2 + gap + round * height))))
+    for (const [i, [dx, dy]] of places.flat().entries()) {
+      const box = [x + dx - width / 2, y + dy - height / 2, x + dx + width / 2, y + dy + height / 2]
+      const isOutside = box[0] < free.left || box[2] > free.right
+        || box[1] < free.top || box[3] > free.bottom
+      if (isOutside || this.taken.some((other) => overlap(box, other))) { continue }
+      this.taken.push(box)
+      if (i >= sides.length) { this.paths([[[x, y], [x + dx, y + dy]]], color, 1, {alpha: 0.6}) }
+      Object.assign(c, {strokeStyle: colors.paper, lineWidth: 5, lineJoin: "round"})
+      c.strokeText(text, x + dx, y + dy)
+      c.fillStyle = color
+      c.fillText(text, x + dx, y + dy)
+      return
+    }
   }
 
   /** @param {number} kind @param {number[]} at */
@@ -100,11 +114,12 @@ export class FlatDrawing {
     const seen = data.rays.filter((one) => lit.has(one))
     const inside = ([, , winding]) => isKept(winding, tau)
     if (!this.scene.asking) { this.lines(pieces(seen, inside), colors.interior, 5 * this.unit) }
-    this.chosenRay((_run, sum) => String(sum))
+    this.chosenRay(([low, high]) => windingText(sumAt(ray, (low + high) / 2)))
   }
 
   winding() {
     const {data, ray, tau} = this.scene
+    const {colors} = this
     const groups = new Map()
     for (const one of data.rays.filter(({way}) => way === ray.way)) {
       for (const [low, high, winding] of one.pieces) {
@@ -115,13 +130,14 @@ export class FlatDrawing {
     }
     for (const [key, segments] of groups) {
       const [color, isInside] = key.split(" ")
-      this.lines(segments, color, (isInside === "1" ? 6 : 1.5) * this.unit)
+      const isWide = isInside === "1" || color === colors.negative
+      this.lines(segments, color, (isWide ? 6 : 1.5) * this.unit)
     }
-    this.chosenRay(([, , winding]) => windingText(winding))
+    this.chosenRay(([, , winding]) => windingText(winding, 1))
   }
 
   windingColor(winding) {
-    if (winding < -0.02) { return this.colors.negative }
+    if (winding <= -this.scene.tau) { return this.colors.negative }
     const at = Math.round(Math.min(Math.max(winding, 0), 1) * (WINDINGS - 1))
     return this.colors.winding[at]
   }
@@ -130,35 +146,25 @@ export class FlatDrawing {
   chosenRay(numberOf) {
     const {ray, at, tau, asking} = this.scene
     const {colors, place} = this
-    const all = runs(ray)
+    const all = runs(ray, numberOf)
     const line = all.map(([low, high]) => this.part(ray, low, high))
     this.lines(line, colors.paper, 9)
     this.lines(line, colors.ink, 2)
     const inside = all.filter(([, , winding]) => !asking && isKept(winding, tau))
     this.lines(inside.map(([low, high]) => this.part(ray, low, high)), colors.interior, 6)
-    const aside = ([x, y], by) => ray.way ? [x + 1.3 * by, y] : [x, y - by]
-    const after = sums(ray)
-    let free = -Infinity
-    this.font(13)
+    const [x, y] = place.pixel(ray.way ? [ray.at, at] : [at, ray.at])
+    const [above, below] = ray.way ? [[[1, 0]], [[-1, 0]]] : [[[0, -1]], [[0, 1]]]
+    this.taken.push([x - 9, y - 9, x + 9, y + 9])
     for (const run of asking ? [] : all) {
       const middle = (run[0] + run[1]) / 2
       const pixel = place.pixel(ray.way ? [ray.at, middle] : [middle, ray.at])
-      const along = ray.way ? -pixel[1] : pixel[0]
-      const crossed = ray.crossings.filter(([where]) => where < middle).length
-      const number = numberOf(run, after[crossed - 1])
-      const half = this.context.measureText(number).width / 2 + 2
-      if (!crossed || along - half < free) { continue }
-      free = along + half
-      this.text(number, aside(pixel, 16 * this.scene.zoom))
+      if (middle > ray.crossings[0]?.[0]) { this.label(numberOf(run), pixel, above, {gap: 8}) }
     }
-    this.font(11)
     for (const [where, step] of ray.crossings) {
       const pixel = place.pixel(ray.way ? [ray.at, where] : [where, ray.at])
       this.shape(2, pixel, 4.5, step > 0 ? colors.surface : colors.paper, colors.surface)
-      const below = aside(pixel, -17 * this.scene.zoom)
-      this.text(step > 0 ? "+1" : "−1", below, colors.surface)
+      this.label(step > 0 ? "+1" : "−1", pixel, below, {gap: 8, color: colors.surface})
     }
-    const [x, y] = place.pixel(ray.way ? [ray.at, at] : [at, ray.at])
     this.shape(0, [x, y], 7, colors.mark, colors.paper)
   }
 
@@ -172,7 +178,7 @@ export class FlatDrawing {
     const {data, tied, joined, node} = this.scene
     const {colors, place, unit} = this
     const [mesh, interior, surface] = [colors.mesh, colors.interior, colors.surface]
-    this.edges(0, mesh, 1.2)
+    this.edges(0, mesh, 2.4)
     this.edges(1, interior, 2.2 * unit)
     const isJoined = (e) => joined.has(data.edges[e][0])
     this.edges(2, surface, 1.8, {dash: [4, 3]}, isJoined)
@@ -195,7 +201,7 @@ export class FlatDrawing {
     this.shape(0, place.pixel(nodes[node]), 14, null, this.colors.mark, 2.5)
     const {free} = place
     const size = Math.min(...asking ? [free.width, 0.6 * free.height, 300 * this.scene.zoom]
-      : [0.4 * free.width, 0.45 * free.height, 200 * this.scene.zoom])
+      : [0.6 * free.width, 0.5 * free.height, 220 * this.scene.zoom])
     const [left, top] = [free.left, free.bottom - size]
     const seen = inFront(this.scene.data, tied)
     if (!seen) { return }
@@ -212,15 +218,15 @@ export class FlatDrawing {
     if (asking) {
       const ties = ends.filter((_, i) => chosen.has(i)).map((end) => [inset(seen.crossing), end])
       this.paths(ties, colors.surface, 4, {dash: [6, 4]})
-      this.font(14)
-      ends.forEach(([x, y], i) => this.text(CORNERS[i], [x, y + (y < top + size / 2 ? -18 : 18)]))
+      ends.forEach((end, i) =>
+        this.label(CORNERS[i], end, [[0, end[1] < top + size / 2 ? -1 : 1]], {gap: 7}))
     }
     if (!joined.has(node)) { return }
-    this.font(12)
     const [x, y] = inset(seen.crossing)
     tied.forEach(([, e], i) => {
       const [cx, cy] = inset(seen.corners[i])
-      this.text(this.scene.length(this.scene.data.lengths[e]), [(x + 2 * cx) / 3, (y + 2 * cy) / 3])
+      const at = [(x + 2 * cx) / 3, (y + 2 * cy) / 3]
+      this.label(this.scene.length(this.scene.data.lengths[e]), at, [[0, 0], ...AROUND])
     })
   }
 
@@ -262,12 +268,8 @@ export class FlatDrawing {
     for (const [node] of data.sources) {
       this.shape(0, place.pixel(data.nodes[node]), 7 * unit, null, colors.source, 2.5)
     }
-    this.font(11)
-    if (!hidden) {
-      for (const node of queue.slice(0, SHOWN_NUMBERS).toReversed()) {
-        const [x, y] = place.pixel(data.nodes[node])
-        this.text(length(distance[node]), [x + 16, y - 9])
-      }
+    for (const node of hidden ? [] : queue.slice(0, SHOWN_NUMBERS)) {
+      this.label(length(distance[node]), place.pixel(data.nodes[node]), AROUND)
     }
     for (const node of [last, candidate].filter((one) => one >= 0)) {
       this.shape(0, place.pixel(data.nodes[node]), 9, null, colors.mark, 3)
@@ -280,9 +282,11 @@ export class FlatDrawing {
   }
 }
 
-/** A winding number: whole, or with two digits. */
-export function windingText(winding) {
-  const text = Math.abs(winding - Math.round(winding)) < 0.005
-    ? String(Math.round(winding) || 0) : winding.toFixed(2)
-  return text.replace("-", "−")
+/** @param {number[]} one @param {number[]} other */
+const overlap = ([a, b, c, d], [e, f, g, h]) => a < g && e < c && b < h && f < d
+
+/** A winding number: whole, or with one or two digits. */
+export function windingText(winding, digits = 2) {
+  const text = winding.toFixed(digits)
+  return String(Number(text) % 1 ? text : Number(text) || 0).replace("-", "−")
 }

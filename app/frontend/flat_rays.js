@@ -1,9 +1,13 @@
 // Rays through a flat section: crossings along one, and winding numbers. See `flat_modes.js`.
 
+import {closer} from "./flat_part.js"
 import {isKept, pieceAt, runs, sumAt} from "./flat_search.js"
 import {windingText} from "./flat_draw.js"
 
 const NEAR_HOLE = 0.3  // winding number
+const REVERSED = -0.9
+const SLIM = 700  // a window less wide than this shows a part
+const PART = 0.3  // of the width, above the mark and below
 
 const clamped = (x, low, high) => Math.min(Math.max(x, low), high)
 const signed = (step) => step > 0 ? "+1" : "−1"
@@ -14,20 +18,22 @@ export class Rays {
     this.ways = [0, 1].map((way) => scene.data.rays.filter((ray) => ray.way === way))
     scene.lit = new Set()
     this.index = this.ways.map((rays) => Math.floor(rays.length / 2))
+    this.identity = `${scene.mode} ${scene.data.box}`  // alike where only signs of faces change
+    const {of, way, point} = scene.marked ?? {}
     this.turn(this.ways[0].length ? 0 : 1)
-    if (scene.mode === "winding") { this.findFraction() }
+    const isSame = of === this.identity
+    if (isSame) { this.way = way; this.press(point) }
+    if (!isSame && scene.mode === "winding") { this.findNotable() }
+    this.isNear = innerWidth < SLIM
   }
 
-  // Begins near a hole, where there is one.
-  findFraction() {
-    const {rays} = this.scene.data
-    const away = ([, , winding]) => Math.abs(winding - NEAR_HOLE)
-    const [least, ray, piece] = rays
-      .flatMap((ray) => ray.pieces.map((piece) => [away(piece), ray, piece]))
-      .reduce((best, other) => other[0] < best[0] ? other : best, [0.15])
-    if (least === 0.15) { return }
-    this.way = ray.way
-    this.choose(this.ways[this.way].indexOf(ray), (piece[0] + piece[1]) / 2)
+  // Begins in the longest run where faces are reversed; else near a hole, where there is one.
+  findNotable() {
+    const all = this.ways[this.way].flatMap((ray, index) => runs(ray).map(([low, high, winding]) =>
+      ({index, at: (low + high) / 2,
+        rank: winding < REVERSED ? high - low : -Math.abs(winding - NEAR_HOLE)})))
+    const best = all.reduce((one, other) => other.rank > one.rank ? other : one)
+    if (best.rank > -NEAR_HOLE / 2) { this.choose(best.index, best.at) }
   }
 
   turn(way) {
@@ -45,8 +51,16 @@ export class Rays {
     const from = this.index[this.way]
     for (let i = Math.min(from, to); i <= Math.max(from, to); i++) { this.scene.lit.add(rays[i]) }
     this.index[this.way] = to
-    const {pieces} = this.scene.ray = rays[to]
-    this.scene.at = clamped(at, pieces[0][0], pieces.at(-1)[1])
+    const ray = this.scene.ray = rays[to]
+    const along = this.scene.at = clamped(at, ray.pieces[0][0], ray.pieces.at(-1)[1])
+    const point = this.way ? [ray.at, along] : [along, ray.at]
+    this.scene.marked = {of: this.identity, way: this.way, point}
+  }
+
+  // The mark goes where the sum is right.
+  reveal() {
+    const {ray, at, tau} = this.scene
+    if (!isKept(sumAt(ray, at), tau)) { this.turn(this.way) }
   }
 
   press(point) {
@@ -71,14 +85,20 @@ export class Rays {
 
   buttons() {
     const {scene} = this
-    const light = () => { this.ways[this.way].forEach((ray) => scene.lit.add(ray)) }
-    const all = ["Light all", light]
-    if (scene.asking) { return [["This point", () => this.answer()]] }
-    return [["Turn rays", () => this.turn(1 - this.way)], ...scene.mode === "rays" ? [all] : []]
+    const light = ["Light all", () => this.ways[this.way].forEach((ray) => scene.lit.add(ray))]
+    if (scene.asking) { return [["This point", () => this.answer()], closer(this)] }
+    const turn = ["Turn rays", () => this.turn(1 - this.way)]
+    return [turn, ...scene.mode === "rays" ? [light] : [], closer(this)]
   }
 
+  // All, or what is as high as the mark.
   seen() {
-    return this.scene.data.box
+    const {data: {box, box: [x0, y0, x1, y1]}, marked} = this.scene
+    this.middle = this.isNear ? this.middle ?? marked.point[1] : null
+    if (!this.isNear) { return box }
+    const half = Math.min(PART * (x1 - x0), (y1 - y0) / 2)
+    const y = clamped(this.middle, y0 + half, y1 - half)
+    return [x0, y - half, x1, y + half]
   }
 
   answer() {
@@ -93,10 +113,12 @@ export class Rays {
     if (mode === "winding") {
       const pieces = this.ways[this.way].flatMap((one) => one.pieces)
       const count = pieces.filter(([, , number]) => isKept(number, tau)).length
+      const textOf = ([, , number]) => windingText(number, 1)
+      const along = runs(ray, textOf).map(textOf).join(", ")
       return `At the mark the winding number is ${windingText(winding)}, `
         + (isInside ? `at least τ = ${tau.toFixed(2)}: inside. `
           : `less than τ = ${tau.toFixed(2)}: outside. `)
-        + `${count} of ${pieces.length} pieces are inside.`
+        + `Along the ray: ${along}. ${count} of ${pieces.length} pieces are inside.`
     }
     const steps = ray.crossings.map(([, step]) => signed(step)).join(" ")
     if (asking) { return `Crossings from the left: ${steps || "none"}. The mark is movable.` }

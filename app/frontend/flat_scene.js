@@ -12,6 +12,8 @@
 //   answer(value)  what a person did where a step asks: a sum, a number of corners, a node
 //   close()     the plane has gone into the body: show mode "" from now on
 //   cards()     elements over the canvas that the drawing stays clear of
+//   tools()     the toolbar over the canvas, or null
+//   cover(on)   the scene covers the 3D view, or does not
 //   project()   a function from points of the 3D scene to pixels of the canvas, or null
 
 import {button, element, within} from "./elements.js"
@@ -37,12 +39,14 @@ const ASKED = {
   graph: "Click corners of the triangle, or use the buttons. Enter answers.",
   search: "Click a node. Or choose one by the arrow keys, and press Enter.",
 }
-const KEY = [["●", "mesh", "mesh"], ["■", "interior", "lattice"], ["▲", "surface", "crossing"]]
+const KINDS = [["●", "mesh", "mesh"], ["■", "interior", "interior"], ["▲", "surface", "surface"]]
+const NUMBERS = [["━", "negative", "−1"], ["━", "idle", "0"], ["━", "interior", "1"]]
+const KEY = {graph: KINDS, search: KINDS, winding: NUMBERS}
 const TILTING = 1100  // milliseconds
 const WIDE = 700
 const LOW = 420  // as a telephone on its side
 const WIDE_IF_LOW = 400
-const LARGE = 1700
+const STAGED = 24 / 14  // letters of a presentation, of others
 const QUEUED = 8
 
 export function flatScene(host) {
@@ -88,24 +92,25 @@ export function flatScene(host) {
     scene.asking = given.task === "open"
     now = given
     root.hidden = !now.mode
+    host.cover?.(!root.hidden)
     if (root.hidden) { mode = null; return }
     Object.assign(scene, {data: now.data, mode: now.mode, colors: now.colors})
     root.setAttribute("aria-label", `Flat scene: ${NAMES[now.mode]}`)
     root.classList.toggle("empty", !now.data)
     if (!now.data) { mode = null; say.textContent = "Computing the section …"; return }
     if (isNew) {
-      const {size} = now.data
-      scene.length = (length) => lengthText(size * length)
+      scene.length = (length) => lengthText(now.data.size * length)
       mode = now.data.rays.length ? new MODES[now.mode](scene) : null
     }
     if (isDone) { mode?.reveal?.() }
     place.tilt = 0
     tilting = null
     root.style.removeProperty("--tilt")
-    key.replaceChildren(...KEY.map(([glyph, name, text]) =>
-      element("span", {style: {color: now.colors[name]}}, glyph, element("i", {}, text))))
-    key.hidden = !["graph", "search"].includes(now.mode)
     label.hidden = now.mode !== "winding"
+    key.replaceChildren(...(KEY[now.mode] ?? []).map(([glyph, name, text]) =>
+      element("span", {style: {color: now.colors[name]}}, glyph, element("i", {}, text))),
+    label.hidden ? `lengths in ${now.data.unit}` : "")
+    key.hidden = !KEY[now.mode]
     queue.hidden = now.mode !== "search" || scene.asking
     tau.value = String(scene.tau)
     help.textContent = helpOf()
@@ -153,6 +158,7 @@ export function flatScene(host) {
     place.project = host.project?.()
     const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches
     if (isCalm || !place.project) { host.close(); return }
+    host.cover?.(false)
     tilting = {}
     request()
   }
@@ -185,12 +191,17 @@ export function flatScene(host) {
         inset[edge] = Math.max(inset[edge], isRight ? box.right - left : right - box.left)
       }
     }
+    const tools = host.tools?.()?.getBoundingClientRect()
+    if (tools?.width && tools.left < box.right - inset.right && box.height >= LOW) {
+      inset.top = Math.max(inset.top, tools.bottom - box.top)
+    }
     for (const [edge, pixels] of Object.entries(inset)) { work.style[edge] = `${pixels}px` }
     const isLow = box.height < LOW
     root.classList.toggle("low", isLow)
     const free = box.width - inset.left - inset.right
     work.classList.toggle("wide", free >= (isLow ? WIDE_IF_LOW : WIDE))
-    scene.zoom = box.width >= LARGE ? 1.5 : 1
+    const isStaged = getComputedStyle(root).getPropertyValue("--card-text") !== ""
+    scene.zoom = isStaged && free >= WIDE ? STAGED : 1
     root.classList.toggle("large", scene.zoom > 1)
     const [width, height] = [canvas.clientWidth, canvas.clientHeight]
       .map((length) => Math.round(length * devicePixelRatio))
@@ -239,8 +250,12 @@ export function flatScene(host) {
 
 /** @param {{model: Model}} widget */
 export function render({model}) {
+  const viewport = () =>
+    siblings(scene.root).map((one) => one.shadowRoot?.querySelector(".viewport")).find(Boolean)
   const scene = flatScene({
     answer: (value) => model.send_msg({type: "answer", value}),
+    cover: (on) => viewport()?.classList.toggle("covered", on),
+    tools: () => viewport()?.querySelector(".tools"),
     close: () => { model.value = "" },
     project: () => window.__cutcell?.renderer?.projection() ?? null,
   })

@@ -2,13 +2,7 @@
 
 /** @typedef {{way: number, at: number, pieces: number[][], crossings: number[][]}} Ray */
 
-/** The winding number after each crossing of a ray: entries count +1, exits −1. @param {Ray} ray */
-export function sums({crossings}) {
-  let sum = 0
-  return crossings.map(([, step]) => sum += step)
-}
-
-/** The same at a place of the ray. @param {Ray} ray @param {number} at */
+/** The winding number at a place of a ray: entries count +1, exits −1. @param {Ray} ray */
 export function sumAt({crossings}, at) {
   return crossings.reduce((sum, [place, step]) => place < at ? sum + step : sum, 0)
 }
@@ -21,13 +15,14 @@ export function pieceAt({pieces}, at) {
   return pieces.find(([low, high]) => low <= at && at <= high)
 }
 
-/** Pieces of equal numbers that follow each other, as one. @param {Ray} ray */
-export function runs({pieces, crossings}) {
+/** Pieces of equal numbers, or texts, that follow each other, as one. @param {Ray} ray */
+export function runs({pieces, crossings}, textOf = (piece) => piece[2]) {
   const joined = []
   for (const [low, high, winding] of pieces) {
     const last = joined.at(-1)
     const isCrossed = crossings.some(([place]) => place === low)
-    if (last && !isCrossed && last[1] === low && last[2] === winding) {
+    const isEqual = last && last[1] === low && textOf(last) === textOf([low, high, winding])
+    if (isEqual && !isCrossed) {
       last[1] = high
     } else {
       joined.push([low, high, winding])

@@ -33,7 +33,8 @@ function empty(model, what, number) {
 const FORMS = {mesh: "●", interior: "■", surface: "▲"}
 
 // A node of the graph; a press on a neighbour goes there.
-function nodeCard(model, {node, kind, position, winding, degree, neighbours, triangle, vertices}) {
+function nodeCard(model, facts) {
+  const {node, unit, kind, position, winding, degree, neighbours, triangle, vertices} = facts
   const root = empty(model, "Node", node)
   root.append(quiet(`${FORMS[kind]} ${kind} node`))
   const list = element("dl")
@@ -43,7 +44,7 @@ function nodeCard(model, {node, kind, position, winding, degree, neighbours, tri
   if (triangle) { tell("cut from", `face ${triangle[0]}: ${triangle.slice(1).join(", ")}`) }
   if (vertices.length) { tell(vertices.length > 1 ? "vertices" : "vertex", vertices.join(", ")) }
   const title = degree === 1 ? "1 neighbour" : `${degree} neighbours`
-  root.append(list, heading(title, "length, in the file's units"))
+  root.append(list, heading(title, `length in ${unit}`))
   for (const other of neighbours) {
     const length = lengthText(other.length)
     const label = `Go to ${other.kind} node ${other.node}, ${length} away`
@@ -241,7 +242,7 @@ function card(model, facts) {
     heading(facts.overruled ? "Weights, set manually" : "Weights", ...own),
     ...facts.weights.map((bone) => weightRow(model, bone, facts)))
   if (!facts.distances) { return root }  // of another method
-  root.append(heading("The nearest bones", "distance, in the file's units"),
+  root.append(heading("The nearest bones", `distance in ${facts.unit}`),
     ...distanceRows(model, facts.distances), ...asks ? explanation(model, facts) : [])
   const reached = facts.reached ? "Reached through the body from at least one joint."
     : `It follows its nearest bones in a straight line: ${facts.reason}.`

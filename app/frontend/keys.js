@@ -81,6 +81,7 @@ const TOOLS = [
   ["link", "Copy the link to this view",
     '<path d="M10 14a4 4 0 0 0 6 0l3-3a4 4 0 0 0-6-6l-1 1"/>'
     + '<path d="M14 10a4 4 0 0 0-6 0l-3 3a4 4 0 0 0 6 6l1-1"/>'],
+  ["step", "Add this view as a step of a lesson", '<path d="M5 4h14v16H5zM12 8.5v7M8.500 12h7"/>'],
   ["rendered", "Rendered by PyVista, with soft shadows, when the view rests",
     '<circle cx="12" cy="12" r="8"/>'
     + '<path d="M12 4a8 8 0 0 1 0 16c3-4.500 3-11.500 0-16z" fill="currentColor"/>'],

@@ -60,7 +60,7 @@ export function lessonCard(steps, host, can = ["picture"]) {
   }
   const backward = () => { if (now.step > 0) { host.go(now.step - 1) } }
 
-  const scores = element("p")
+  const said = element("p")  // of the answer
   const plot = smallPlot()
   let texts = []  // with numbers that are dragged
   let shown = null  // the step and the answer that are written
@@ -81,8 +81,9 @@ export function lessonCard(steps, host, can = ["picture"]) {
       offer.setAttribute("aria-pressed", String(Boolean(now.pressed[i])))
     })
     for (const one of texts) { one.show(now.values) }
-    scores.textContent = Object.entries(now.scores ?? {})
-      .map(([name, share]) => `${name}: ${Math.round(100 * share)}%`).join(" · ")
+    const verdict = judge(step.answer, now.answers[now.step], now.scores)
+    said.textContent = verdict?.text ?? ""
+    said.className = verdict?.right ? "right" : "wrong"
     plot.show(isRevealed() ? now.plot : null)
     if (entering) { title.focus({preventScroll: true}) }
   }
@@ -134,16 +135,12 @@ export function lessonCard(steps, host, can = ["picture"]) {
   }
 
   const revealed = (step) => {
-    const verdict = judge(step.answer, now.answers[now.step])
     texts = step.text.split("\n\n").filter(Boolean).map((one) =>
       sentence(one, now.values, (name, value) => host.set(name, value)))
-    const parts = texts.map(({node}) => node)
-    if (verdict) {
-      const className = verdict.right ? "right" : "wrong"
-      parts.unshift(element("p", {className}, verdict.text), scores)
-    }
+    const offers = offersOf(step)  // which change the plot, where there is one
+    const parts = [said, plot.node, ...step.plot ? offers : [], ...texts.map(({node}) => node)]
     if (step.picture) { parts.push(element("p", {className: "unseen"}, step.picture)) }
-    parts.push(plot.node, ...offersOf(step))
+    if (!step.plot) { parts.push(...offers) }
     if (step.sentence) { parts.push(element("p", {className: "sentence"}, step.sentence)) }
     return parts
   }

@@ -141,7 +141,7 @@ class LessonPage {
     const {messages, pressed, plot} = this.record.views[this.name]
     const {actors, camera, ...rest} = messages[Number(this.dark.matches)]
     const message = {...EMPTY, ...rest, theme: this.scenes.themes[Number(this.dark.matches)]}
-    if (this.calm.matches) { message.playing = false }
+    if (this.calm.matches) { Object.assign(message, {playing: false, animation: null}) }
     // The person's own view stays where the step does not change it.
     const place = JSON.stringify([this.step, camera])
     if (place !== this.place) { message.camera = camera }

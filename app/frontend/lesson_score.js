@@ -5,9 +5,10 @@ import {lengthText} from "./text.js"
 /**
  * Returns null where nothing is right or wrong, as where a person only tries something.
  * @param {Answer} answer what the step asks for  @param {any} value what a person answered
+ * @param {Record<string, number>} scores agreement of what was painted with methods
  * @returns {{right: boolean, text: string} | null}
  */
-export function judge(answer, value) {
+export function judge(answer, value, scores = {}) {
   if (value === "" || value === null || value === undefined) { return null }
   const {kind, expected, tolerance = 0, unit = ""} = answer
   if (kind === "number") {
@@ -16,8 +17,10 @@ export function judge(answer, value) {
     return {right, text: `You said ${lengthText(Number(value))}. ${measured}`}
   }
   if (kind === "paint" && typeof value === "number") {
-    const percent = Math.round(100 * value)
-    return {right: value >= expected, text: `Your paint and what follows agree to ${percent}%.`}
+    const to = (part, name) => `to ${Math.round(100 * part)}% with ${name}`
+    const others = Object.entries(scores).map(([name, part]) => `, ${to(part, `“${name}”`)}`)
+    const text = `Your paint agrees ${to(value, "what should follow")}${others.join("")}.`
+    return {right: value >= expected, text}
   }
   if (kind === "paint" || expected === undefined) { return null }
   const all = [expected].flat()

@@ -87,6 +87,7 @@ interface ToBrowser {
   playing?: boolean  // Whether it runs.
   animation?: Wave | null  // A running wavefront.
   address?: string  // The page's address.
+  link?: string  // What to copy: without the step of the lesson on panels of no step.
   able?: boolean[]  // Keys that do something.
   rendered?: boolean  // Whether PyVista draws the view that rests.
   frame?: {count: number; picture: ArrayBuffer}  // A picture.

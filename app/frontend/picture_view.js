@@ -24,7 +24,7 @@ export class PictureView {
     })
     this.keys = new Keys(overlay, {
       act: (act) => model.send_msg({type: "act", act}), painting: () => false,
-      link: () => copyLink(overlay),
+      link: () => copyLink(overlay, this.link),
       turnable: () => overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
     this.forgetRatio = onPixelRatio(() => this.ask(true))
@@ -46,6 +46,7 @@ export class PictureView {
       if (this.again !== undefined) { this.ask(this.again) }
     }
     if (!message.id) { return }
+    if (message.link) { this.link = message.link }
     if (message.theme) { this.overlay.theme(message.theme) }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if (message.views) {

@@ -15,8 +15,11 @@ export function render({model}) {
       const bar = element("i")
       bar.style.width = `${100 * part}%`
       const click = () => model.send_msg({type: "row", row})
+      const point = () => model.points && model.send_msg({type: "point", row})
+      const leave = () => model.points && model.send_msg({type: "point", row: -1})
+      const on = {click, mouseenter: point, focus: point, mouseleave: leave, blur: leave}
       return element("li", {}, button(
-        {on: {click}}, element("span", {title: name}, name), element("b", {}, note), bar))
+        {on}, element("span", {title: name}, name), element("b", {}, note), bar))
     }))
     mark()
     list.querySelectorAll("button")[held]?.focus()

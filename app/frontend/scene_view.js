@@ -158,6 +158,7 @@ export class SceneView {
     this.insets.make()
     if (message.camera) { this.insets.frame(message.camera); this.rested() }
     if (message.home) { this.orbit.reset(); this.rested() }
+    if (message.link) { this.link = message.link }
     if (message.address) {
       this.address = message.address
       this.surroundings.keys.able(message.able)

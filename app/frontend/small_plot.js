@@ -9,55 +9,46 @@ import {make} from "./drag_handle.js"
 import {element} from "./elements.js"
 import {lengthText, weightText} from "./text.js"
 
-const [WIDTH, HEIGHT] = [300, 150]
-const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 10, 30]
-const POINTS = 80
+const [WIDTH, HEIGHT] = [300, 130]
+const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 20, 30]
 const DASHES = ["none", "6 3", "2 3", "8 3 2 3"]
 
-/** The paper's kernel (equation 1) at a distance, up to a factor. */
-export function kernel(distance, diagonal, alpha) {
-  const x = distance / diagonal
-  return ((1 - alpha) * x + alpha * x * x) ** -2
-}
-
-/** The weight of a joint at a distance, where all joints of a vertex have these distances. */
-export function weightAt(distance, {distances, diagonal, alpha}) {
-  const least = Math.max(Math.min(...distances), 1e-12 * diagonal)
-  const part = (one) => kernel(one, diagonal, alpha) / kernel(least, diagonal, alpha)
-  const sum = distances.reduce((sum, one) => sum + part(Math.max(one, least)), 0)
-  return part(Math.max(distance, least)) / sum
+/** A part of one, as a fraction where it has a short one. @param {number} part */
+export function fractionText(part) {
+  const below = Math.round(1 / part)
+  const isUnit = below <= 16 && Math.abs(part * below - 1) < 1e-6
+  const short = {0: "0", 0.25: "¼", 1: "1"}[Number(part.toFixed(6))]
+  return short ?? (isUnit ? `1/${below}` : weightText(part))
 }
 
 const KINDS = {
-  // The curve that all joints of the vertex lie on, and its joints.
-  falloff(plot) {
-    const {marks, distances} = plot
-    const end = 1.15 * Math.max(...marks.map(({distance}) => distance), 1e-9)
-    const start = Math.min(...distances)
-    const places = Array.from({length: POINTS}, (_, i) => start + (end - start) * i / (POINTS - 1))
-    const curve = places.map((distance) => [distance, weightAt(distance, plot)])
-    const dots = marks.map(({name, distance, weight, chosen}) =>
-      ({name, chosen, at: [distance, plot.on_curve ? weightAt(distance, plot) : weight]}))
-    const top = Math.max(...curve.map(([, y]) => y), ...dots.map(({at: [, y]}) => y))
+  // The curve of the falloff with the joints of the vertex, relative to the nearest, at d.
+  falloff({curve, marks, twice, unit}) {
+    const [d] = curve.points[0]
+    const named = [["1", [d, 1]], [fractionText(twice[1]), twice]]
     return {
-      curves: [{name: "paper's falloff", points: curve}], dots,
-      x: {label: "distance", from: 0, to: end, ticks: [0, end / 2, end], text: lengthText},
-      y: {label: "weight", from: 0, to: top, ticks: [0, top], text: weightText},
-      says: dots.map(({name, at}) => `${name} ${weightText(at[1])} at ${lengthText(at[0])}`),
+      curves: [curve],
+      dots: [...marks, ...named.map(([name, at]) => ({name, at, chosen: false, isNamed: true}))],
+      x: {label: `distance in ${unit}`, from: 0, to: curve.points.at(-1)[0], ticks: [0, d, 2 * d],
+        text: (x) => ({[d]: `d = ${lengthText(d)}`, [2 * d]: "2d"})[x] ?? "0"},
+      y: {label: "weight, nearest bone: 1", from: 0, to: 1, ticks: [0, 0.25, 1],
+        text: fractionText},
+      says: [...marks.map(({name, at}) => `${name} ${weightText(at[1])} at ${lengthText(at[0])}`),
+        `${fractionText(twice[1])} at 2d`],
     }
   },
-  // A curve for each connectivity, on logarithmic axes.
-  error({curves, at}) {
+  // A curve for each connectivity; R is on a logarithmic axis.
+  error({curves, at, reference}) {
     const all = curves.flatMap(({points}) => points)
-    const limits = (i) => [Math.min(...all.map((p) => p[i])), Math.max(...all.map((p) => p[i]))]
-    const [[fewest, most], [least, worst]] = [limits(0), limits(1)]
-    const now = Math.min(Math.max(at, fewest), most)
+    const [sizes, errors] = [0, 1].map((i) => all.map((point) => point[i]))
+    const [fewest, most, worst] = [Math.min(...sizes), Math.max(...sizes), Math.max(...errors)]
+    const top = 10 * Math.ceil(worst / 10)
     return {
-      curves, dots: [], line: now,
+      curves, dots: [], line: Math.min(Math.max(at, fewest), most),
       x: {label: "R", from: fewest, to: most, log: true,
         ticks: curves[0].points.map(([r]) => r), text: String},
-      y: {label: "error in %", from: least, to: worst, log: true, ticks: [least, worst],
-        text: lengthText},
+      y: {label: `mean error in %, against ${reference}`, from: 0, to: top,
+        ticks: [0, top / 2, top], text: lengthText},
       says: curves.map(({name, points}) =>
         `${name} ${points.map(([r, e]) => `${lengthText(e)} % at R = ${r}`).join(", ")}`),
     }
@@ -95,16 +86,16 @@ function drawn({curves, dots, line, x, y, says}) {
   text(x.label, "tick", [(LEFT + WIDTH - RIGHT) / 2, HEIGHT - 4])
   if (line) { path([[across(line), TOP], [across(line), HEIGHT - BOTTOM]], {class: "now"}) }
   curves.forEach(({points}, i) => path(points.map(([a, b]) => [across(a), up(b)]),
-    {style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`}))
-  for (const {name, at: [a, b], chosen} of dots) {
-    const [className, r] = chosen ? ["dot chosen", 5] : ["dot", 3.5]
-    make("circle", className, svg, {cx: across(a), cy: up(b), r})
-    if (chosen) { text(name, "name", [across(a) + 8, up(b) - 6]) }
+    {style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`, class: `curve c${i}`}))
+  for (const {name, at: [a, b], chosen, isNamed} of dots) {
+    const [className, r] = chosen || isNamed ? ["dot chosen", 5] : ["dot", 3.5]
+    make("circle", isNamed ? "dot mark" : className, svg, {cx: across(a), cy: up(b), r})
+    if (chosen || isNamed) { text(name, "name", [across(a) + 8, up(b) - 6]) }
   }
   const key = element("figcaption", {}, y.label, ...curves.map(({name}, i) => {
     const sample = element("span")
     make("path", "curve", make("svg", "", sample, {viewBox: "0 0 24 6", width: 24, height: 6}),
-      {d: "M0 3H24", style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`})
+      {d: "M0 3H24", style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`, class: `curve c${i}`})
     sample.append(name)
     return sample
   }))

@@ -201,14 +201,14 @@ class Page {
 
   // As `vertex_facts` of the server.
   facts(vertex) {
-    const {joints, sizes, reasons} = this.scenes
+    const {joints, sizes, reasons, unit} = this.scenes
     const {heavy, weights, near, distances, finite, component, fallback} = this.vertices
     const [most, nearest] = [heavy, near].map(({length}) => length / fallback.length)
     const row = (ids, values, size, name) => Array.from({length: size}, (_, k) =>
       ({...joints[ids[size * vertex + k]], [name]: values[size * vertex + k]}))
     const part = component[vertex]
     return {
-      vertex, computed: true,
+      vertex, unit, computed: true,
       weights: row(heavy, weights, most, "ours").filter(({ours}) => ours > LEAST),
       distances: row(near, distances, nearest, "distance").slice(0, finite[vertex]),
       component: {number: part + 1, of: sizes.length, vertices: sizes[part]},

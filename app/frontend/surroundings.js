@@ -24,7 +24,7 @@ export class Surroundings {
         if (act === "strongest") { view.pointer.strongest(); return }
         model.send_msg({type: "act", act})
       },
-      link: () => { view.addressBar.rested(); copyLink(overlay) },
+      link: () => { view.addressBar.rested(); copyLink(overlay, view.link) },
       painting: () => Boolean(view.brush.part),
       turnable: () => overlay.canvas.matches(":focus") && !view.orbit.byMouse,
     })

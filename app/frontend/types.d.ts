@@ -23,7 +23,7 @@ type Answer = {
   prompt?: string; options?: string[]; expected?: any; unit?: string; tolerance?: number
   button?: string
 }
-type Step = Record<'title' | 'question' | 'text' | 'sentence' | 'picture' | 'notes', string>
+type Step = Record<'title' | 'question' | 'text' | 'sentence' | 'picture' | 'notes' | 'plot', string>
   & {answer: Answer; offers: string[]}
 type LessonNow = {
   step: number; answers: Record<string, any>; pressed: boolean[]; values: Record<string, any>

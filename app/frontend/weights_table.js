@@ -31,7 +31,7 @@ export function render({model}) {
     })
     const foot = totals.map(([name, ...values]) => element("tr", {},
       element("th", {scope: "row"}, name),
-      ...values.map((value) => element("td", {}, String(value)))))
+      ...values.map((value) => element("td", {}, value.toFixed(name === "Total" ? 1 : 3)))))
     table.hidden = !columns.length
     table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...body),
       element("tfoot", {}, ...foot))

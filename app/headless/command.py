@@ -1,5 +1,6 @@
 """The command `cutcell render`: a picture, a film or an interactive page of what the page shows."""
 
+import os
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -92,8 +93,7 @@ def render(
         ),
     ] = None,
     quiet: Annotated[
-        bool,
-        typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES),
+        bool, typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES)
     ] = False,
 ) -> None:
     """Draw a character as the page shows it: a picture, a figure, a film or an interactive page.
@@ -172,7 +172,8 @@ def _describe(
     for one in chosen:
         method, textures = one.method, scenes.textures_for(rig, one)
         if method not in bindings and len(rig.skeleton.joints):
-            bindings[method] = bind(rig, method=method, progress=progress)
+            resolution = method.resolution if has_resolution else None
+            bindings[method] = bind(rig, resolution, method=method, progress=progress)
             warnings += bindings[method].warnings
         computed: dict[str, Any] = {
             "binding": bindings.get(method),
@@ -211,7 +212,7 @@ def _write_page(
         loaded.require_joints()
         joint = None if choices["bone"] is None else bone_index(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
-        binding = bind(loaded, method=method, progress=progress)
+        binding = bind(loaded, options["resolution"], method=method, progress=progress)
         page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
         write_all({out: page.encode()})
     _report(out, "an interactive page, ", [*loaded.warnings, *binding.warnings], quiet)
@@ -256,6 +257,8 @@ def _check_interactive(explicit: list[str]) -> None:
 
 def required(users: str, *modules: str) -> list[Any]:
     """Import modules that need the libraries of `cutcell[app]`."""
+    if os.path.expanduser("~") == "~":  # Bokeh cannot be imported without a home folder
+        os.environ["HOME"] = "/nonexistent"
     try:
         return [import_module(name) for name in modules]
     except ModuleNotFoundError as error:

@@ -26,6 +26,7 @@ from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing
 from cutcell_viewers.character import bones
 from cutcell_viewers.description import Description, Legend
+from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
@@ -170,11 +171,7 @@ def _joints(state: State, memo: Memo, progress: Progress) -> dict[str, list[Any]
         rings.append(gizmo_part(state))
         state.panel = "distance"
         distances.append(_message(following(state, memo)))
-    return {
-        "weights": [*weights, _mixed(state, memo)],
-        "distance": distances,
-        "rings": rings,
-    }
+    return {"weights": [*weights, _mixed(state, memo)], "distance": distances, "rings": rings}
 
 
 def _mixed(state: State, memo: Memo) -> dict[str, Any]:
@@ -214,6 +211,7 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
         },
         "sizes": sizes.tolist(),
         "reasons": FALLBACK_REASONS,
+        "unit": unit_of(rig),
     }
 
 

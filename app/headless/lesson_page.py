@@ -20,7 +20,7 @@ from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.palette import THEMES
 
 from ..features.character import theme_part
-from ..features.compare.scene import title_of, weights_of
+from ..features.compare.scene import shown_title, weights_of
 from ..features.learn.lesson import Lesson, Step, built_in
 from ..features.learn.plots import plot_of
 from ..features.learn.steps import (
@@ -69,7 +69,7 @@ def lesson_page(lesson: Lesson | None = None, *, progress: Progress = silent) ->
         A character of a step cannot be read or bound.
     """
     lesson = lesson or built_in()
-    recording, rows = _Recording(lesson), []
+    recording, rows = Recording(lesson), []
     try:
         for index, step in enumerate(lesson.steps):
             progress("recording the lesson", index / len(lesson))
@@ -97,7 +97,7 @@ def _row(index: int, step: Step, picture: str) -> str:
     return ROW.format(number=index + 1, picture=picture, alt=html.escape(step.picture), **texts)
 
 
-class _Recording:
+class Recording:
     """Records of all steps: the view before and after the answer, of each button and number."""
 
     def __init__(self, lesson: Lesson) -> None:
@@ -199,7 +199,7 @@ class _Recording:
         if step.answer.kind == "paint":
             part["right"] = self._moved(step)
             methods = state.methods if state.panel == "compare" else ()
-            tables = {title_of(name): weights_of(state, name) for name in methods}
+            tables = {shown_title(state, name): weights_of(state, name) for name in methods}
             part["methods"] = {
                 title: self._moved(step, table)
                 for title, table in tables.items()

@@ -17,31 +17,19 @@ PARTS = ("animation", "bones", "brush", "camera", "clip", "front", "gizmo", "ima
 
 
 class Recorder:
-    """A session, and the thread that owns it.
-
-    Attributes
-    ----------
-    session : Session
-    """
+    """A session, and the thread that owns it."""
 
     def __init__(self) -> None:
         self._actions: queue.Queue[Callable[[], Any]] = queue.Queue()
         self.session = begin(self._actions.put)
         self._view: Any = self.session.view
-        self._view.calm = True
 
     def close(self) -> None:
         """End the session."""
         self.session.close()
 
     def rest(self) -> None:
-        """Run until no work is left.
-
-        Raises
-        ------
-        CutcellError
-            Something failed.
-        """
+        """Run until no work is left; raise a `CutcellError` where something failed."""
         work, is_idle = self.session.work, False
 
         def end() -> None:

@@ -15,10 +15,8 @@ CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyz0123456789-._[]:")
 def check_origins(origins: Iterable[str]) -> tuple[str, ...]:
     """Return origins in lower case, without repetitions, in their order.
 
-    Raises
-    ------
-    ParameterError
-        One is no origin: a scheme, a host and perhaps a port, without a path.
+    An origin is a scheme, a host and perhaps a port, without a path; all else is a
+    `ParameterError`.
     """
     return tuple(dict.fromkeys(_checked(origin) for origin in origins))
 

@@ -1,38 +1,44 @@
 """Access control: answers to requests outside of sessions.
 
 The page is text and costs next to nothing; a session begins when its websocket opens. Websockets
-are accepted only from pages of this server, and requests for unknown host names are refused (DNS
-rebinding).
+are accepted only from pages of this server, with the token of a page that is at most five minutes
+old, and requests for unknown host names are refused (DNS rebinding).
 """
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Collection, Mapping
 from functools import cached_property
-from html import escape
 from typing import Any
 from urllib.parse import urlparse
 
 from bokeh.server.contexts import ApplicationContext
 from bokeh.server.tornado import BokehTornado
 from bokeh.server.util import check_allowlist
-from bokeh.util.token import generate_jwt_token, generate_session_id, get_token_payload
+from bokeh.server.views.ico_handler import IcoHandler
+from bokeh.server.views.multi_root_static_handler import MultiRootStaticHandler
+from bokeh.server.views.static_handler import StaticHandler
+from bokeh.util import token as tokens
 from panel.io.document import _cleanup_doc
 from panel.io.resources import Resources
 from panel.io.server import WSHandler, server_html_page_for_session
 from panel.io.session import generate_session
 from panel.io.state import set_curdoc
-from tornado.httputil import HTTPServerRequest
-from tornado.routing import Matcher, Rule
+from tornado.routing import Rule
 from tornado.web import ErrorHandler, RequestHandler, StaticFileHandler
 
 from .frames import headers_of
+from .hosts import PLAIN, Misdirected, Strange
 
 MAX_SESSIONS = 64
 """Limit of open pages; each takes some 30 MB, and its character."""
 MAX_SESSIONS_OF_CLIENT = MAX_SESSIONS // 2
 """Limit for one network address: enough for a class, but not the whole server."""
+
+PUBLIC = (IcoHandler, StaticHandler, MultiRootStaticHandler)
+"""Handlers of Bokeh and Panel that are kept: they answer anyone with files of their packages."""
 
 REMEDY = "Close one, or come back later."
 FULL_OF_CLIENT = (
@@ -44,11 +50,6 @@ KEPT_SECONDS = 365 * 24 * 3600
 """Lifetime in browsers' caches of files whose address contains their version."""
 TOKEN = "token-of-the-session"
 """Placeholder in the page's text of the part that differs for each visitor."""
-
-PLAIN = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>cutcell</title>
-<meta name="viewport" content="width=device-width">
-<style>:root {{ color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif }}
-p {{ max-width: 36em; margin: 20vh auto 0; padding: 0 24px }}</style><p>{}</p>"""
 
 
 def guard(
@@ -84,13 +85,16 @@ def guard(
     routes: list[Any] = [
         (r"/?", PageHandler, {"context": context, "text": text, "frames": frames}),
         (r"/ws", SocketHandler, websocket),
-        # These would begin sessions, too.
-        (r"/(?:autoload\.js|metadata)", ErrorHandler, {"status_code": 404}),
+        # No file system has such a name; looking for it fails.
+        (r".*%00.*", ErrorHandler, {"status_code": 404}),
         *(
             (rf"/{address}/(.*)", Lasting, {"path": path})
             for address, path in (static or {}).items()
         ),
     ]
+    # The others begin sessions or import modules.
+    public = tornado.wildcard_router.rules
+    public[:] = [rule for rule in public if rule.target in PUBLIC]
     tornado.add_handlers(".*", routes)
     strange = Rule(Strange(hosts), Misdirected, {"hosts": hosts})
     tornado.default_router.rules.insert(0, tornado.default_router.process_rule(strange))
@@ -168,14 +172,16 @@ class PageHandler(RequestHandler):
         """Answer with the page."""
         agent = self.request.headers.get("User-Agent", "")
         arguments = {name: values[:1] for name, values in self.request.arguments.items()}
-        application = self._context.application
-        token = generate_jwt_token(
-            generate_session_id(),
+        server: Any = self.application
+        signed = {"secret_key": server.secret_key, "signed": server.sign_sessions}
+        token = tokens.generate_jwt_token(
+            tokens.generate_session_id(**signed),
+            **signed,
             extra_payload={
                 "headers": {"User-Agent": agent[:400]},
                 "cookies": {},
                 "arguments": arguments,
-                **application.process_request(self.request),
+                **self._context.application.process_request(self.request),
             },
         )
         self.finish(self._text(token))
@@ -184,16 +190,9 @@ class PageHandler(RequestHandler):
 class SocketHandler(WSHandler):
     """Accepts websockets only from pages of this server, up to the limit of sessions."""
 
-    def initialize(
-        self,
-        application_context: Any,
-        bokeh_websocket_path: str,
-        hosts: Collection[str] = (),
-        clients: Counter[str] | None = None,
-    ) -> None:
+    def initialize(self, *args: Any, **options: Any) -> None:
         """Store the options of the route; `clients` counts the open websockets of each address."""
-        self._hosts = hosts
-        self._clients = Counter() if clients is None else clients
+        self._hosts, self._clients = options["hosts"], options["clients"]
         self._is_counted = False
 
     async def prepare(self) -> None:
@@ -201,7 +200,9 @@ class SocketHandler(WSHandler):
         if "Origin" not in self.request.headers:
             # Browsers always send it: this is a program that may run for anyone.
             self._refuse(403, "A websocket must have an Origin.")
-        elif full(self.application_context):
+        elif not self._has_token():
+            self._refuse(403, "The page is too old. Reload it.")
+        elif full(self.application_context) or self._clients.total() >= MAX_SESSIONS:
             self._refuse(503, FULL)
         elif self._clients[self._client] >= MAX_SESSIONS_OF_CLIENT:
             self._refuse(503, FULL_OF_CLIENT)
@@ -214,14 +215,9 @@ class SocketHandler(WSHandler):
 
     def open(self, *args: Any, **more: Any) -> None:
         """Begin, or rejoin, the session of the request's token."""
-        try:
-            get_token_payload(str(self._token))
-        except Exception:
-            self.close(1008, "no token of a session")
-        else:
-            self._is_counted = True
-            self._clients[self._client] += 1
-            super().open(*args, **more)
+        self._is_counted = True
+        self._clients[self._client] += 1
+        super().open(*args, **more)
 
     def on_close(self) -> None:
         """Count one page of the client less."""
@@ -238,6 +234,19 @@ class SocketHandler(WSHandler):
         if self.ws_connection is not None:  # else it has ended already
             await super()._async_open(token)
 
+    def _has_token(self) -> bool:
+        """Return whether the request has a token that this server made a few minutes ago."""
+        server: Any = self.application
+        try:
+            kind, token = self.request.headers["Sec-WebSocket-Protocol"].replace(" ", "").split(",")
+            return (
+                kind == "bokeh"
+                and tokens.check_token_signature(token, server.secret_key, server.sign_sessions)
+                and tokens.get_token_payload(token)["session_expiry"] > time.time()
+            )
+        except Exception:  # of Bokeh, which expects tokens to be whole
+            return False
+
     def _refuse(self, status: int, sentence: str) -> None:
         self.set_status(status)
         self.finish(sentence)
@@ -249,34 +258,3 @@ class Lasting(StaticFileHandler):
     def get_cache_time(self, *args: Any) -> int:
         """Return for how many seconds."""
         return KEPT_SECONDS
-
-
-class Strange(Matcher):
-    """Matches requests for unknown hosts."""
-
-    def __init__(self, hosts: Collection[str]) -> None:
-        self._hosts = list(hosts)
-
-    def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """Return a match, or None for a known host."""
-        return None if check_allowlist(request.host.lower(), self._hosts) else {}
-
-
-class Misdirected(RequestHandler):
-    """Answers requests for another host; see `Strange`."""
-
-    def initialize(self, hosts: Collection[str]) -> None:
-        """Store the options of the route."""
-        self._hosts = hosts
-
-    def prepare(self) -> None:
-        """Refuse."""
-        self.set_status(421)
-        links = " or ".join(f"http://{host}" for host in self._hosts)
-        requested = escape(self.request.host[:100])
-        self.finish(
-            PLAIN.format(
-                f"Unknown host name: {requested}. Open {escape(links)}. To serve under another "
-                "name, set BOKEH_ALLOW_WS_ORIGIN to it, with its port."
-            )
-        )

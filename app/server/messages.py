@@ -1,6 +1,7 @@
 """Texts of errors: sentences without the server's folders."""
 
 import errno
+import os
 import re
 import tempfile
 from collections.abc import Iterable
@@ -37,7 +38,7 @@ def error_text(error: BaseException) -> str:
 
 def visible_text(text: str) -> str:
     """Return a message as a page shows it."""
-    folders = (Path(tempfile.gettempdir()), Path.cwd(), Path.home(), ROOT)
+    folders = (Path(tempfile.gettempdir()), Path.cwd(), Path(os.path.expanduser("~")), ROOT)
     return printable(without_folders(text, folders), 600)
 
 

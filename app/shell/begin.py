@@ -8,13 +8,7 @@ from .watchers import follow
 
 
 def begin(schedule: Schedule) -> Session:
-    """Return a new session with its view and watchers.
-
-    Parameters
-    ----------
-    schedule : callable
-        Runs a function on the page's own thread; see `Jobs`.
-    """
+    """Return a new session with its view and watchers; see `derive.jobs.Schedule`."""
     view = SceneView(sizing_mode="stretch_both")
     session = Session(view, schedule)
     view.receiver = receiver(session)

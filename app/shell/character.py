@@ -21,9 +21,7 @@ LESSONS = {demo.id: demo.lesson for demo in DEMOS}
 
 def faults(state: State) -> list[str]:
     """Return what the diagnosis says of the character, but for what is only good to know."""
-    if state.diagnosis is None:
-        return []
-    severe = [f for f in state.diagnosis.findings if f.severity != "note"]
+    severe = [f for f in state.open_findings if f.severity != "note"]
     return [finding.message for finding in severe[:MAX_FAULTS]]
 
 
@@ -59,7 +57,7 @@ def about(state: Any) -> str:
     if state.lesson_step is not None and state.step not in state.answers:
         return ""
     problems = faults(state)
-    name = state.rig.name + ":" * bool(problems) if state.rig else ""
+    name = state.rig.name + ", in the file:" * bool(problems) if state.rig else ""
     return " ".join([LESSONS.get(state.demo) or name, *problems])
 
 

@@ -23,10 +23,7 @@ def copy_script(session: Session) -> None:
 def copy_command(session: Session) -> None:
     """Copy a command line that computes the weights of the page again."""
     recipe = recipe_of(session)
-    if recipe is not None and recipe.counts_per_character and not recipe.edits:
-        text = "The file holds several characters: the command counts R along one. Copy as Python."
-        session.state.message = ("info", text)
-    elif recipe is not None:
+    if recipe is not None:
         _copy(session, recipe, "Command", command_of(recipe), bool(recipe.edits))
 
 

@@ -1,5 +1,6 @@
 """Export: the character with its new weights, pictures, films, numbers."""
 
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -15,40 +16,62 @@ from cutcell.runtime.display import count
 from ..document.session import Session
 from ..document.state import State
 from ..features.correct import commands as correct
-from ..features.layers.stack import painted_vertices
+from ..features.layers.stack import vertices_of
 from ..headless.interactive import VIEWS, interactive_page
 from ..widgets import controls as ui
 from . import export as actions
 from .export_code import copy_command, copy_script
 
-WHOSE = {"From file": True, "Computed": False}
+COMPUTED = "Computed"
+WHOSE = {"From file": True, COMPUTED: False}
 """The base below all layers."""
+LATE = ("rig", "binding", "repair", "edits")
 
 
 def changes_of(state: State) -> str:
     """Return what of the weights that are exported differs from the file, in a line."""
-    rig, binding = state.rig, state.binding
-    if binding is None:
+    if state.binding is None:
         return ""
+    counts = changed_rows(state)
+    if counts is None:
+        return "Computed weights."
+    if not counts:
+        return "The file's weights, unchanged."
+    which = ", ".join(f"{title} {number:,}" for title, number in counts.items())
+    return f"{count(sum(counts.values()), 'vertex', 'differ')} from the file: {which}."
+
+
+def changed_rows(state: State) -> dict[str, int] | None:
+    """Return how many vertices differ from the file by each layer, the topmost first, and below.
+
+    None where the file has no weights.
+    """
+    rig, binding = state.rig, state.binding
     file_weights = rig.weights if state.repair is None else state.repair.before.weights
     if file_weights is None or file_weights.shape != binding.weights.shape:
-        return "Computed weights."
+        return None
     differs = _rows_differ(binding.weights, file_weights)
-    if not differs.any():
-        return "The file's weights, unchanged."
-    painted = np.zeros(len(differs), bool)
-    painted[painted_vertices(state.edits)] = True
-    repaired = ~painted & ~_rows_differ(binding.weights, rig.weights)
-    kinds = {
-        "repaired": differs & repaired,
-        "painted": differs & painted,
-        "recomputed": differs & ~painted & ~repaired,
-    }
-    total = count(int(differs.sum()), "vertex")
-    counts = {kind: int(rows.sum()) for kind, rows in kinds.items() if rows.any()}
-    if len(counts) == 1:
-        return f"{total} {next(iter(counts))}."
-    return f"{total}: {', '.join(f'{number:,} {kind}' for kind, number in counts.items())}."
+    counts: Counter[str] = Counter()
+    for layer in reversed(state.edits.layers):
+        if not layer.is_reach:
+            rows = vertices_of([layer], binding.graph, len(differs))
+            counts[layer.title] += int(differs[rows].sum())
+            differs[rows] = False
+    repaired = differs & ~_rows_differ(binding.weights, rig.weights)
+    counts["Repaired"] += int(repaired.sum())
+    counts[COMPUTED] += int((differs & ~repaired).sum())
+    return {title: number for title, number in counts.items() if number}
+
+
+def loss(state: State) -> str:
+    """Warn where an export replaces more than was edited."""
+    if state.edits.base == "file" or not state.edits.layers or state.binding is None:
+        return ""
+    number = (changed_rows(state) or {}).get(COMPUTED, 0)
+    if not number:
+        return ""
+    rows = count(number, "vertex")
+    return f"The export also replaces {rows} that were not edited. From file keeps them."
 
 
 def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
@@ -70,7 +93,8 @@ def _described(state: State) -> str:
         moved = any(one.position is not None for one in edits.joints.values())
         changed = ["weights"]
         changed += ["skeleton"] if moved or edits.structural else []
-        changed += ["mesh"] if state.repair is not None else []
+        repair = state.repair
+        changed += ["mesh"] if repair and repair.before.mesh is not repair.after.mesh else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
@@ -97,8 +121,8 @@ FILMS = {
     "Turntable (GIF)": _offering(actions.export_turntable, "gif"),
     "Motion (MP4)": _offering(actions.export_motion, "mp4"),
     "Motion (GIF)": _offering(actions.export_motion, "gif"),
-    "Sweep (MP4)": _offering(actions.export_sweep, "mp4"),
-    "Sweep (GIF)": _offering(actions.export_sweep, "gif"),
+    "Moving cut or wavefront (MP4)": _offering(actions.export_sweep, "mp4"),
+    "Moving cut or wavefront (GIF)": _offering(actions.export_sweep, "gif"),
 }
 NUMBERS = {
     "Weights (CSV)": _offering(actions.export_numbers, "weights", "csv"),
@@ -111,17 +135,22 @@ CODE: dict[str, Callable[[Session], Any]] = {
     "Copy as Python": copy_script,
     "Copy as command": copy_command,
 }
-EXPORT = ui.folded(
-    "Export",
+BASE = ui.section(
+    "",
     ui.choice(
         "",
+        "Base, below all layers",
         options=WHOSE,
         value=correct.uses_file,
         act=correct.choose_file,
         visible=lambda state: ui.has_weights(state) and not state.bare,
         disabled=lambda state: state.graph is None,
     ),
-    ui.caption(changes_of, late=("rig", "binding", "repair", "edits")),
+    ui.caption(changes_of, late=LATE),
+    ui.caption(loss, late=LATE, sx={**ui.QUIET, "color": "warning.main"}),
+)
+EXPORT = ui.folded(
+    "Export",
     ui.button(
         "Export GLB",
         _offering(actions.export_bound),

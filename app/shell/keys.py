@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cutcell.editing import Edits
+from cutcell.editing import edited_rig
 from cutcell_viewers.camera import FRONT
 
 from ..document.address import defaults
@@ -12,7 +12,8 @@ from ..document.session import Session
 from ..document.state import PANELS, State
 from ..features.brush import strokes as brush
 from ..features.character import camera_on_bone, first_joint
-from ..features.correct.choices import applied, changed_only, changes
+from ..features.correct.choices import changed_only, changes
+from ..features.learn.writing import save_view
 from ..features.pairs import results as pairs
 from ..features.select import actions as selecting
 
@@ -32,6 +33,7 @@ def act(session: Session, name: str) -> None:
         "undo": lambda: revisit(session, session.history.undo()),
         "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
+        "step": lambda: save_view(session),
         "rendered": lambda: state.param.update(rendered=not state.rendered),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
@@ -56,8 +58,8 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = applied(state.own, Edits())
-    changed = {**changes(state, rig, Edits()), **changed_only(state, first)}
+    rig = edited_rig(state.own, state.first_edits)
+    changed = {**changes(state, rig, state.first_edits), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
     session.view.send(home=True)
 

@@ -51,16 +51,8 @@ def page(
 ) -> pmui.Page:
     """Return a new page, on which a character is about to stand.
 
-    Parameters
-    ----------
-    path : Path, optional
-        The character to open; the first demo when left out.
-    opened : OpenedAudit, optional
-        An audit whose pairs are looked at.
-    actors : mapping of str to Actor, optional
-        Meshes to show with every character.
-    lesson : Lesson, optional
-        The lesson of the panel Learn; the one that comes with the page when left out.
+    The first demo comes without a path, and the built-in lesson without a lesson. `opened` is an
+    audit whose pairs are looked at; `actors` are shown with every character.
     """
     document: Any = pn.state.curdoc
     # Panel sets this as it writes a session's HTML; here that is written once for all of them.

@@ -28,11 +28,7 @@ def watch(session: Session) -> None:
 def draw(session: Session, message: dict[str, Any]) -> None:
     """Draw the scene as the browser shows it, and send the picture.
 
-    Parameters
-    ----------
-    session : Session
-    message : dict
-        What the browser counts the frame as ("frame"), its camera, its pixels and its tiles.
+    The message has the browser's number of the "frame", its camera, its pixels and its tiles.
     """
     scene, options = Seen.now(session), _frame_options(message)
 

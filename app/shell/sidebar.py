@@ -12,7 +12,7 @@ from ..features.weights.bone import BONE
 from ..widgets import controls as ui
 from ..widgets.tabs import Tabs
 from .character import CHARACTER
-from .export_controls import EXPORT
+from .export_controls import BASE, EXPORT
 
 NO_SKELETON = (
     "This mesh has no skeleton. Choose a template above, or drop a file with one. "
@@ -26,7 +26,7 @@ def _is_alone(state: Any) -> bool:
 
 
 CHOSEN = ui.column(CHARACTER, SKELETON, BONE, visible=_is_alone)
-EXPORTED = ui.column(EXPORT, visible=_is_alone)
+EXPORTED = ui.column(BASE, EXPORT, visible=_is_alone)
 
 
 def sidebar(session: Session) -> list[Any]:

@@ -16,12 +16,8 @@ from cutcell_viewers.palette import colormap, to_hex
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:
     """Return the message that turns one description into another.
 
-    Parameters
-    ----------
-    old, new : Description
-    sent : set of str
-        Names of the actors that the browser has; brought up to date here. An actor is
-        not sent before it is first seen.
+    `sent` has the names of the actors that the browser has, and is brought up to date: an actor is
+    not sent before it is first seen.
     """
     message: dict[str, Any] = {}
     removed = [name for name in sent if name not in new.actors]

@@ -70,7 +70,7 @@ def choice(name: str, title: str = "", above: int = 2, **options: Any) -> Any:
     return [caption(title, margin=(above, 0, 0, 0), **shared), buttons] if title else buttons
 
 
-def select(name: str, label: str, **options: Any) -> Control:
+def select(name: str, label: Any, **options: Any) -> Control:
     """Return a menu."""
     style = {**SMALL, "label": label, "options": names_of(name)}
     return Control(pmui.Select, name, **{**style, **options})
@@ -82,7 +82,7 @@ def names_of(name: str) -> dict[str, Any]:
 
 
 def pick(
-    label: str,
+    label: Any,
     names: Callable[[Any], Sequence[str]],
     index: Callable[[Any], int],
     act: Callable[[Session, int], Any],
@@ -91,16 +91,8 @@ def pick(
     """Return a menu of names, of which some may be equal.
 
     Names, not indices, are its values: an index that stays would keep the name that it had.
-
-    Parameters
-    ----------
-    label : str
-    names, index : callable
-        Functions of a `Reader`: the names, and the index of the chosen one.
-    act : callable
-        Called with the session and the index of the one that a person chooses.
-    **options
-        See `Control`.
+    `names` and `index` are functions of a `Reader`; `act` is called with the session and the index
+    of the one that a person chooses.
     """
 
     def shows(state: Any) -> dict[str, Any]:

@@ -41,16 +41,10 @@ class Reader:
 
 @dataclass(eq=False)
 class Follower:
-    """A function of a `Reader`, what is done with its value, and what it read last.
+    """A function of a `Reader`, what is done with its value, and the names that it read last.
 
-    Parameters
-    ----------
-    function, act : callable
-    late : set of str
-        Parameters whose changes are followed only after a pause: the view comes first.
-    owner : Follower, optional
-        One that ends this one when it runs again.
-    names : set of str
+    Changes of parameters in `late` are followed only after a pause: the view comes first. When its
+    owner runs again, it ends.
     """
 
     function: Callable[[Any], Any]
@@ -67,11 +61,7 @@ class Follower:
 class Followers:
     """Followers that send all that they change in one message.
 
-    Parameters
-    ----------
-    session : Session
-    panel : str, optional
-        They wait while another panel is shown.
+    Those of a panel wait while another one is shown.
     """
 
     def __init__(self, session: Session, panel: str = "") -> None:

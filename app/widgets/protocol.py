@@ -98,6 +98,7 @@ TO_BROWSER = {
     "playing": ("Whether it runs.", "boolean"),
     "animation": ("A running wavefront.", "Wave | null"),
     "address": ("The page's address.", "string"),
+    "link": ("What to copy: without the step of the lesson on panels of no step.", "string"),
     "able": ("Keys that do something.", "boolean[]"),
     "rendered": ("Whether PyVista draws the view that rests.", "boolean"),
     "frame": ("A picture.", "{count: number; picture: ArrayBuffer}"),

@@ -12,10 +12,15 @@ class Rows(Clickable):
 
     rows = param.List([], doc="(name, text at its end, length of its bar from 0 to 1).")
     chosen = param.Integer(-1, doc="The row that is marked; -1 for none.")
+    pointed = param.Integer(-1, doc="The row under the pointer or with the focus; -1 for none.")
+    points = param.Boolean(False, doc="Whether the browser reports that row.")
     label = param.String("", doc="Name of the list for a screen reader.")
 
     _esm = script("rows")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
-        if 0 <= int(data["row"]) < len(self.rows):
-            self.click(int(data["row"]))
+        row = int(data["row"])
+        if data.get("type") == "point":
+            self.pointed = row if 0 <= row < len(self.rows) else -1
+        elif 0 <= row < len(self.rows):
+            self.click(row)

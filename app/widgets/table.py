@@ -33,6 +33,8 @@ class Control:
         See `Follower`.
     watched : str
         Parameter of the widget that changes when a person chooses.
+    repeats : bool
+        Whether Enter in a field chooses its text again.
     **options
         Options of the widget. A function is called with a `Reader`, again whenever what it reads
         changes, and returns the option's value.
@@ -47,13 +49,14 @@ class Control:
         shows: Callable[[Any], dict[str, Any]] = lambda state: {},
         late: Collection[str] = (),
         watched: str = "value",
+        repeats: bool = False,
         **options: Any,
     ) -> None:
         if name:
             options = {"label": State.param[name].label, "value": attrgetter(name), **options}
             act = act or (lambda session, value: setattr(session.state, name, value))
         self.kind, self.act, self.content, self.watched = kind, act, content, watched
-        self.late = frozenset(late)
+        self.late, self.repeats = frozenset(late), repeats
         self.fixed = {name: value for name, value in options.items() if not callable(value)}
         self._moving = {name: value for name, value in options.items() if callable(value)}
         self._shows = shows
@@ -67,13 +70,7 @@ class Control:
 def draw(session: Session, row: Any, panel: str = "") -> Any:
     """Return the widget of a row, which follows the state of a session from now on.
 
-    Parameters
-    ----------
-    session : Session
-    row : Control, Viewable or callable
-        A function of the session returns another row.
-    panel : str, optional
-        Panel that the row is a part of.
+    A function of the session returns another row. `panel` is the one that the row is a part of.
     """
     return _draw(Followers(session, panel), row, None)
 
@@ -117,6 +114,8 @@ def _connect(session: Session, widget: Any, row: Any) -> None:
         widget.on_click(lambda event: row.act(session, event))
     else:
         widget.param.watch(chosen, row.watched)
+    if row.repeats:
+        widget.param.watch(lambda event: row.act(session, widget.value), "enter_pressed")
 
 
 def _update(widget: Any, values: dict[str, Any]) -> None:

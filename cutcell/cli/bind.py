@@ -3,31 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import asdict, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from . import options as given
 from .console import for_people, print_result, progress_bars
-from .options import (
-    Accessories,
-    Deform,
-    Fresh,
-    Json,
-    LayersFile,
-    Lock,
-    NoDeform,
-    Quiet,
-    RigFile,
-    SkeletonFile,
-    Smoothing,
-    Symmetric,
-    TemplateName,
-    chosen_method,
-    layered_method,
-    with_method,
-)
 from .report import described, report_rows
 
 if TYPE_CHECKING:
@@ -67,29 +47,23 @@ GLTF_INFLUENCES = 4
 
 
 @for_people
-@with_method()
+@given.with_method()
 def bind(
-    rig: RigFile,
-    out: Annotated[
-        Path,
-        typer.Argument(
-            metavar="OUT",
-            help="Output file: a copy of RIG with the new weights.",
-        ),
-    ],
+    rig: given.RigFile,
+    out: given.OutFile,
     options: dict[str, Any],
-    smoothing: Smoothing = 0,
-    symmetric: Symmetric = False,
-    lock: Lock = None,
-    deform: Deform = None,
-    no_deform: NoDeform = None,
-    fresh: Fresh = False,
-    layers: LayersFile = None,
-    skeleton: SkeletonFile = None,
-    accessories: Accessories = False,
-    template: TemplateName = None,
-    json: Json = False,
-    quiet: Quiet = False,
+    smoothing: given.Smoothing = 0,
+    symmetric: given.Symmetric = False,
+    lock: given.Lock = None,
+    deform: given.Deform = None,
+    no_deform: given.NoDeform = None,
+    fresh: given.Fresh = False,
+    layers: given.LayersFile = None,
+    skeleton: given.SkeletonFile = None,
+    accessories: given.Accessories = False,
+    template: given.TemplateName = None,
+    json: given.Json = False,
+    quiet: given.Quiet = False,
 ) -> None:
     """Compute skinning weights for RIG and save it with them as OUT.
 
@@ -98,23 +72,16 @@ def bind(
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
     from ..editing import bind as compute
-    from ..editing import edited_rig
+    from ..editing import edited_rig, stored
     from ..editing.refine import refinement
-    from ..editing.stored import (
-        load_edits,
-        save_bound,
-        settings_with_layers,
-        stored_edits,
-        with_base,
-    )
     from ..io import check_output, load, save, saving_notes
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
     from ..templates.fit import check_template
     from .summary import summarize_weights
 
-    edits = None if layers is None else load_edits(layers)
-    how = chosen_method(options) if edits is None else layered_method(options, edits.method)
+    edits = None if layers is None else stored.load_edits(layers)
+    how, resolution = given.layered_method(options, edits)
     touches: dict[str, Any] = {"smoothing": smoothing, "symmetric": symmetric, "locked": lock or []}
     fits = None if template is None else check_template(template)
     check_output(out)
@@ -123,9 +90,9 @@ def bind(
         if fits is not None:
             with progress_bars(quiet) as progress:
                 loaded, graph = _with_template(loaded, fits, how, progress)
-        unused = stored_edits(loaded) if edits is None else None
+        unused = stored.stored_edits(loaded) if edits is None else None
         if edits is not None:
-            loaded = with_base(loaded)
+            loaded = stored.with_base(loaded)
             if not len(loaded.skeleton.joints):
                 loaded = edited_rig(loaded, edits)  # they may bring a skeleton
         loaded.require_joints()
@@ -135,15 +102,10 @@ def bind(
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
         binding = compute(
-            loaded,
-            how.resolution if edits is not None and "resolution" in edits.method else None,
-            method=how,
-            **touches,
-            edits=edits,
-            graph=graph,
-            progress=progress,
+            loaded, resolution, method=how, **touches, edits=edits, graph=graph, progress=progress
         )
     dropped: list[str] = []
+    how = binding.method
     is_open = options["max_influences"] is None and how.max_influences is None
     if is_open and out.suffix.lower() in GLTF:
         binding, dropped = _limited(loaded, binding, edits, touches)
@@ -156,8 +118,9 @@ def bind(
         )
     result = loaded.with_weights(binding.weights)
     if edits is not None and out.suffix.lower() in GLTF:
-        settings = settings_with_layers(loaded, binding, edits, refinement(loaded, **touches))
-        files = save_bound(out, result, settings)
+        touched = refinement(loaded, **touches)
+        settings = stored.settings_with_layers(loaded, binding, edits, touched)
+        files = stored.save_bound(out, result, settings)
     else:
         files = save(out, result)
     warnings += saving_notes(out, loaded)
@@ -165,7 +128,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": options["method"],
+        "method": options["method"] or "animation",
         "parameters": {**asdict(how), **touches},
         "layers": None if layers is None else str(layers),
         "template": template,
@@ -194,10 +157,7 @@ def _with_template(
 
 
 def _limited(
-    rig: Rig,
-    binding: Binding,
-    edits: Edits | None,
-    touches: dict[str, Any],
+    rig: Rig, binding: Binding, edits: Edits | None, touches: dict[str, Any]
 ) -> tuple[Binding, list[str]]:
     """Limit the influences to those of glTF; return a warning about the dropped weight."""
     from ..editing import Edits

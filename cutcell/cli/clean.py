@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from ..runtime.display import count
 from .console import for_people, print_result, progress_bars
-from .options import Json, Quiet, Resolution, RigFile, SkeletonFile
+from .options import Json, OutFile, Quiet, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
     from ..diagnosis import Cleaned
@@ -30,13 +27,7 @@ FEW = 12
 @for_people
 def clean(
     rig: RigFile,
-    out: Annotated[
-        Path,
-        typer.Argument(
-            metavar="OUT",
-            help="Output file: a copy of RIG with the cleaned weights.",
-        ),
-    ],
+    out: OutFile,
     resolution: Resolution = 64,
     skeleton: SkeletonFile = None,
     json: Json = False,
@@ -84,10 +75,8 @@ def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str
     if document["bound"]:
         yield "bound again", f"{document['bound']:,} that lost more than half of their weight"
     for loss in cleaned.losses[:FEW]:
-        yield (
-            loss.name,
-            f"{loss.share:.1%} of its weight, on {count(len(loss.vertices), 'vertex')}, "
-            f"up to {loss.largest:.0%} of one",
-        )
+        vertices = count(len(loss.vertices), "vertex")
+        share = f"{loss.share:.1%} of its weight, on {vertices}, up to {loss.largest:.0%} of one"
+        yield loss.name, share
     if len(cleaned.losses) > FEW:
         yield "", f"and {len(cleaned.losses) - FEW} more joints"

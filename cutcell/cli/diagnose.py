@@ -12,7 +12,7 @@ from rich.text import Text
 from ..errors import CutcellError
 from ..runtime.display import count, printable
 from .console import WRONG_INPUT, for_people, print_json, print_warnings, progress_bars
-from .options import FILES, Json, Resolution, RigFile, SkeletonFile
+from .options import FixFile, Json, Resolution, RigFile, SkeletonFile
 
 if TYPE_CHECKING:
     from ..diagnosis import Diagnosis, Finding
@@ -40,15 +40,7 @@ FEW = 5
 @for_people
 def diagnose(
     rig: RigFile,
-    fix: Annotated[
-        Path | None,
-        typer.Option(
-            "--fix",
-            metavar="OUT",
-            help="Save a copy with all safe repairs; nothing else in it changes.",
-            rich_help_panel=FILES,
-        ),
-    ] = None,
+    fix: FixFile = None,
     resolution: Resolution = 64,
     skeleton: SkeletonFile = None,
     fail_on: Annotated[
@@ -102,12 +94,8 @@ def diagnose(
         save(fix, repaired.rig)
         warnings += saving_notes(fix, repaired.rig)
         codes = [finding.code for finding in repaired.repaired]
-        repair = {
-            "output": str(fix),
-            "codes": codes,
-            "done": list(repaired.done),
-            **after.to_dict(),
-        }
+        done = list(repaired.done)
+        repair = {"output": str(fix), "codes": codes, "done": done, **after.to_dict()}
     if json:
         document = {"input": str(rig), "resolution": resolution, **before.to_dict()}
         print_json({**document, "repair": repair, "warnings": warnings})

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import Json, LayersFile, RigFile, SkeletonFile, chosen_method, with_method
+from .options import Json, LayersFile, RigFile, SkeletonFile, layered_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -56,14 +56,14 @@ def explain(
     from ..editing.stored import load_edits, with_base
     from ..io import load
 
-    how = chosen_method(options)
     stored = None if layers is None else load_edits(layers)
+    how, resolution = layered_method(options, stored)
     loaded = load(rig, skeleton=skeleton)
     if stored is not None:
         loaded = with_base(loaded)
     with progress_bars(quiet=json) as progress:
         explanation = compute(
-            loaded, vertex, joint=joint, method=how, edits=stored, progress=progress
+            loaded, vertex, resolution, joint=joint, method=how, edits=stored, progress=progress
         )
     if json:
         print_json({"input": str(rig), **explanation.to_dict(), "warnings": list(loaded.warnings)})
@@ -94,10 +94,8 @@ def _print(heading: str, explanation: Explanation, joint: str | None) -> None:
     for share in shares:
         if share.absence:
             console.print(Text(f"no weight of {shown_name(share.name)}: {share.absence}"))
-    if len(explanation.joints) > len(shares):
-        console.print(
-            f"and {len(explanation.joints) - len(shares)} more joints with less weight: --json"
-        )
+    if (more := len(explanation.joints) - len(shares)) > 0:
+        console.print(f"and {more} more joints with less weight: --json")
 
 
 def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[str, list[str]]]:
@@ -113,11 +111,8 @@ def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[s
         rows.append((f"  {name}", cells))
     if factors:
         rows.append(("counts as", [_number(share.effective) for share in shares]))
-    present = dict.fromkeys(name for share in shares for name in share.steps)
-    rows += [
-        (steps.get(name, name), [f"{share.steps[name]:.4f}" for share in shares])
-        for name in present
-    ]
+    for name in dict.fromkeys(name for share in shares for name in share.steps):
+        rows.append((steps.get(name, name), [f"{share.steps[name]:.4f}" for share in shares]))
     if any(share.file_weight is not None for share in shares):
         rows.append(("in the file", [f"{share.file_weight:.4f}" for share in shares]))
     return rows

@@ -5,17 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from . import options as given
 from .console import for_people, print_result, progress_bars
-from .options import (
-    Deform,
-    Fresh,
-    Json,
-    NoDeform,
-    RigFile,
-    SkeletonFile,
-    chosen_method,
-    with_method,
-)
 from .report import described, report_rows
 
 EPILOG = """Examples:
@@ -31,15 +22,15 @@ GRAPH_OPTIONS = ("resolution", "connectivity", "winding_threshold", "orient", "s
 
 
 @for_people
-@with_method("method", *GRAPH_OPTIONS)
+@given.with_method("method", *GRAPH_OPTIONS)
 def graph(
-    rig: RigFile,
+    rig: given.RigFile,
     options: dict[str, Any],
-    deform: Deform = None,
-    no_deform: NoDeform = None,
-    fresh: Fresh = False,
-    skeleton: SkeletonFile = None,
-    json: Json = False,
+    deform: given.Deform = None,
+    no_deform: given.NoDeform = None,
+    fresh: given.Fresh = False,
+    skeleton: given.SkeletonFile = None,
+    json: given.Json = False,
 ) -> None:
     """Build the cut-cell graph of RIG and list its contents; nothing is written.
 
@@ -52,7 +43,7 @@ def graph(
     from ..rig.deform_joints import choose_deform
     from ..weights.context import Context, run
 
-    how = chosen_method(options)
+    how = given.chosen_method(options)
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
@@ -61,7 +52,7 @@ def graph(
         context = run(steps, Context(how, progress=progress))
     document = {
         "input": str(rig),
-        "method": options["method"],
+        "method": options["method"] or "animation",
         "parameters": {name: value for name, value in asdict(how).items() if name in GRAPH_OPTIONS},
         **described(loaded, context.graph, context.distances, context.seconds),
         "warnings": list(loaded.warnings),

@@ -41,6 +41,7 @@ def joints(
         chosen = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
     guess = deform_joints(loaded.mesh, loaded.skeleton)
     rows: list[dict[str, Any]] = []
+    cells: list[tuple[str, str]] = []
     for j, name in enumerate(chosen.skeleton.names):
         carries = bool(chosen.skeleton.deform[j])
         reason = guess.reason[j]
@@ -50,10 +51,8 @@ def joints(
         doubtful = carries and bool(guess.doubtful[j]) and reason == guess.reason[j]
         row = {"name": name, "parent": int(chosen.skeleton.parents[j]), "deform": carries}
         rows.append({**row, "reason": reason, "doubtful": doubtful})
+        answer = "doubtful" if doubtful else "yes" if carries else "no"
+        cells.append((name, f"{answer} · {reason}"))
     document = {"input": str(rig), "joints": rows, "warnings": list(loaded.warnings)}
-    answers = ["doubtful" if row["doubtful"] else "yes" if row["deform"] else "no" for row in rows]
-    cells = [
-        (row["name"], f"{yes} · {row['reason']}") for row, yes in zip(rows, answers, strict=True)
-    ]
     count = int(chosen.skeleton.deform.sum())
     print_result(document, f"{rig.name}: {count} of {len(rows)} joints deform", cells, json)

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
 from functools import wraps
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..runtime.standard_output import output_errors
+from .console import for_people
+
 if TYPE_CHECKING:
+    from ..editing import Edits
     from ..method import Method
 
 METHOD = "The method"
@@ -30,11 +37,48 @@ def _option(panel: str, flags: str, metavar: str, text: str, show_default: bool 
     )
 
 
+@for_people
+def _stdin(context: typer.Context, path: Path | None) -> Path | None:
+    """Return a file with what is on standard input in the place of "-"."""
+    from ..io.inputs import as_file
+
+    if path != Path("-"):
+        return path
+    return context.with_resource(as_file(getattr(sys.stdin, "buffer", b"")))
+
+
+def _stdout(context: typer.Context, path: Path | None) -> Path | None:
+    """Return a GLB in the place of "-" that goes to standard output when all else is done."""
+    if path != Path("-"):
+        return path
+    out = Path(context.with_resource(TemporaryDirectory()), "stdout.glb")
+    output = sys.stdout.buffer
+    context.with_resource(redirect_stdout(sys.stderr))
+    write = output_errors()(lambda: output.write(out.read_bytes() if out.exists() else b""))
+    context.call_on_close(write)
+    return out
+
+
+OutFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="OUT", callback=_stdout,
+        help="Output file: a copy of RIG with the new weights. - is a GLB on standard output.",
+    ),
+]  # fmt: skip
+FixFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--fix", metavar="OUT", callback=_stdout, rich_help_panel=FILES,
+        help="Save a copy with all safe repairs; nothing else in it changes.",
+    ),
+]  # fmt: skip
 _RIG = typer.Argument(
     metavar="RIG",
+    callback=_stdin,
     help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
     " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
-    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it.",
+    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it. - is standard input.",
 )
 RigFile = Annotated[Path, _RIG]
 OptionalRigFile = Annotated[Path | None, _RIG]
@@ -113,13 +157,14 @@ Lock = Annotated[
 
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
     "method": (
-        str, "animation", "--method", "M",
-        "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
+        str | None, None, "--method", "M",
+        "Defaults of the options below. animation: weights for animation. paper: as in the paper."
+        " Default: animation.",
     ),
     "resolution": (
-        int, 64, "--resolution -r", "R",
+        int | None, None, "--resolution -r", "R",
         "Rays along the longest side of the mesh. More rays separate close parts better, but take"
-        " more time and memory.",
+        " more time and memory. Default: 64.",
     ),
     "connectivity": (
         str | None, None, "--connectivity", "C",
@@ -127,15 +172,18 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         " any: at any angle, so that distances are geodesic. Default: any; 6 with --method paper.",
     ),
     "winding_threshold": (
-        float, 0.5, "--winding-threshold", "T",
+        float | None, None, "--winding-threshold", "T",
         "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
-        " open mesh.",
+        " open mesh. Default: 0.5.",
     ),
     "orient": (
-        bool, True, "--orient/--no-orient", "",
-        "Treat inverted faces as flipped, or use all faces as they are in the file.",
+        bool | None, None, "--orient/--no-orient", "",
+        "Treat inverted faces as flipped, which is the default, or use all faces as they are in the"
+        " file.",
     ),
-    "samples": (int, 5, "--samples", "N", "Number of sources along each bone."),
+    "samples": (
+        int | None, None, "--samples", "N", "Number of sources along each bone. Default: 5.",
+    ),
     "leaf": (
         str | None, None, "--leaf", "L",
         "End of each bone. point, extend: at the child joints; a joint without children is a point,"
@@ -158,11 +206,13 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         " all with --method paper, but 4 in glTF files.",
     ),
     "threshold": (
-        float, 0.0, "--threshold", "W",
-        "Weights below this are dropped, and the rest is scaled to sum to 1.",
+        float | None, None, "--threshold", "W",
+        "Weights below this are dropped, and the rest is scaled to sum to 1. Default: 0.",
     ),
 }  # fmt: skip
-"""Type, default, flags, placeholder and help of each option of `Method`, by its field."""
+"""Type, default, flags, placeholder and help of each option of `Method`, by its field.
+
+The default is None, so that one that is given counts, also where it equals the method's."""
 
 
 def _annotated(
@@ -174,10 +224,8 @@ def _annotated(
 
 if TYPE_CHECKING:
     Resolution = int
-    MethodChoice = str
 else:
     Resolution = _annotated(*METHOD_OPTIONS["resolution"])
-    MethodChoice = _annotated(*METHOD_OPTIONS["method"])
 
 
 def with_options(
@@ -221,13 +269,13 @@ def chosen_method(options: Mapping[str, Any]) -> Method:
             values[key] = int(text)
     if values.get("max_influences") == "all":
         values["max_influences"] = None
-    return method_of(check_choice("method", values.pop("method"), METHODS), **values)
+    return method_of(check_choice("method", values.pop("method", "animation"), METHODS), **values)
 
 
-def layered_method(options: Mapping[str, Any], stored: Mapping[str, Any]) -> Method:
-    """Return the method that is stored with layers, with other options of the command line."""
-    chosen = {name: value for name, value in options.items() if value != METHOD_OPTIONS[name][1]}
-    if "method" in chosen:
-        stored = {}
-    stored = {name: "all" if value is None else value for name, value in stored.items()}
-    return chosen_method({**options, **stored, **chosen})
+def layered_method(options: Mapping[str, Any], edits: Edits | None) -> tuple[Method, int | None]:
+    """Return the method of edits and of options that replace it, and the resolution of either."""
+    chosen = {name: value for name, value in options.items() if value is not None}
+    stored = {} if edits is None or "method" in chosen else edits.method
+    stored = {name: "all" if value is None else value for name, value in stored.items()} | chosen
+    method = chosen_method(stored)
+    return method, method.resolution if "resolution" in stored else None

@@ -36,31 +36,23 @@ def described(
 def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Return the rows of a table as pairs of a name and a text."""
     mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
-    yield (
-        "mesh",
-        f"{count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} welded), "
-        f"{count(mesh['triangles'], 'triangle')}, {count(mesh['components'], 'component')}",
-    )
+    vertices, triangles = count(mesh["vertices"], "vertex"), count(mesh["triangles"], "triangle")
+    components = count(mesh["components"], "component")
+    yield "mesh", f"{vertices} ({mesh['welded_vertices']:,} welded), {triangles}, {components}"
     yield from _part_rows(document["meshes"])
     if mesh["closed"]:
         yield "surface", "closed"
     else:
         yield "surface", f"open: {count(mesh['open_edges'], 'edge')} with one triangle"
     if skeleton:
-        yield (
-            "skeleton",
-            f"{count(skeleton['joints'], 'joint')}, {skeleton['deform']:,} may carry weight; "
-            f"{count(skeleton['roots'], 'root')}",
-        )
+        joints, roots = count(skeleton["joints"], "joint"), count(skeleton["roots"], "root")
+        yield "skeleton", f"{joints}, {skeleton['deform']:,} may carry weight; {roots}"
     yield "resolution", f"{graph['resolution']}"
     for what in ("nodes", "edges"):
         kinds = ", ".join(f"{graph[what][k]:,} {k}" for k in ("mesh", "interior", "surface"))
         yield what, f"{graph[what]['total']:,}: {kinds}"
-    yield (
-        "connected",
-        f"{graph['largest_component']:.1%} of the nodes; "
-        f"{count(graph['components'], 'component')} in all",
-    )
+    components = count(graph["components"], "component")
+    yield "connected", f"{graph['largest_component']:.1%} of the nodes; {components} in all"
     if document["fallback"]:
         yield "not reached", _fallback(document["fallback"])
     if "influences" in document:

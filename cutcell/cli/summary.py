@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances
-from ..geometry.triangles import face_edges
+from ..geometry.triangles import face_edges, label_components
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig import Rig, Skeleton, TriangleMesh
 
@@ -20,15 +19,15 @@ KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 
 def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
     """Count the elements of a mesh once equal positions are welded."""
-    faces = graph.vertex_node[mesh.faces].astype(np.int64)
+    faces = graph.faces
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # welded to nothing
-    edges, uses = np.unique(face_edges(faces), axis=0, return_counts=True)
+    uses = np.unique(face_edges(faces), axis=0, return_counts=True)[1]
     welded = int((graph.node_kind == MESH).sum())
     return {
         "vertices": len(mesh.vertices),
         "welded_vertices": welded,
         "triangles": len(mesh.faces),
-        "components": _components(edges, welded),
+        "components": len(np.unique(label_components(faces, welded)[faces])),
         "open_edges": int((uses == 1).sum()),
         "non_manifold_edges": int((uses > 2).sum()),
         "closed": bool(graph.is_closed),
@@ -66,8 +65,7 @@ def summarize_skeleton(skeleton: Skeleton) -> dict[str, int]:
 
 def summarize_graph(graph: CutCellGraph) -> dict[str, Any]:
     """Count the nodes and edges of each kind."""
-    labels = connected_components(graph.csr(), directed=False)[1]
-    sizes = np.bincount(labels)
+    sizes = np.bincount(connected_components(graph.csr(), directed=False)[1])
     return {
         "resolution": graph.lattice.resolution,
         "nodes": _by_kind(graph.node_kind),
@@ -98,10 +96,3 @@ def summarize_weights(weights: NDArray[np.float64]) -> dict[str, float]:
 def _by_kind(kinds: NDArray[np.uint8]) -> dict[str, int]:
     counts = {name: int((kinds == code).sum()) for name, code in KINDS.items()}
     return counts | {"total": len(kinds)}
-
-
-def _components(edges: NDArray[np.int64], count: int) -> int:
-    """Count the connected components; vertices without edges are left out."""
-    links = coo_array((np.ones(len(edges), bool), edges.T), shape=(count, count))
-    labels = connected_components(links, directed=False)[1]
-    return len(np.unique(labels[edges]))

@@ -18,8 +18,7 @@ from ..editing.symmetry import (
 )
 from ..errors import MeshError
 from ..geometry.triangles import closest_on_triangle
-from ..rig import Rig, Skeleton, TriangleMesh
-from ..rig.names import plain
+from ..rig import Rig, TriangleMesh
 from ..runtime.progress import Progress, silent
 
 NEAR = 0.02
@@ -31,62 +30,21 @@ BLOCK = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
-class JointPairs:
-    """The mirror image of each joint, by place and by name.
-
-    Parameters
-    ----------
-    partner : array, shape (j,)
-        The joint on the other side, a joint of the middle itself, -1 for none.
-    by_name : tuple of int
-        Joints that are paired by their names, because their places are not mirrored.
-    contradicting : tuple of int
-        Joints that are paired by place although their names say another partner.
-    unpaired : tuple of int
-        Joints without a partner that may carry weight.
-    """
-
-    partner: NDArray[np.intp]
-    by_name: tuple[int, ...]
-    contradicting: tuple[int, ...]
-    unpaired: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class MirrorImage:
-    """The mirror image of each vertex as a mean of vertices, and of each joint.
+    """The mirror image of each vertex as a mean of vertices.
 
     Parameters
     ----------
-    joints : JointPairs
+    mirror : Mirror
     vertices : array, shape (n, 3), int32
         The corners of the face that is closest to the mirror image of each vertex.
     shares : array, shape (n, 3), float64
         Their shares of the mean; zero in all where a vertex has no mirror image.
     """
 
-    joints: JointPairs
+    mirror: Mirror
     vertices: NDArray[np.int32]
     shares: NDArray[np.float64]
-
-
-def pair_joints(skeleton: Skeleton, by_place: NDArray[np.intp]) -> JointPairs:
-    """Pair joints by place and, where that pairs none, by name.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-    by_place : array, shape (j,)
-        Partners by place, -1 for none: `Mirror.joint`.
-    """
-    by_name = _partners_by_name(skeleton.names)
-    is_free = by_place < 0
-    named = is_free & (by_name >= 0) & is_free[by_name]
-    partner = np.where(named, by_name, by_place)
-    contradicting = (by_place >= 0) & (by_name >= 0) & (by_place != by_name)
-    unpaired = (partner < 0) & skeleton.deform
-    return JointPairs(partner, *(tuple(np.flatnonzero(which).tolist())
-                                 for which in (named, contradicting, unpaired)))  # fmt: skip
 
 
 def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
@@ -109,7 +67,7 @@ def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
             f"{rig.name} is not mirrored across x, y or z: only {part:.0%} of its vertices have a "
             "mirror image on the surface"
         )
-    return MirrorImage(pair_joints(rig.skeleton, mirror.joint), vertices, shares)
+    return MirrorImage(mirror, vertices, shares)
 
 
 def asymmetry(
@@ -129,8 +87,7 @@ def asymmetry(
         0 for mirrored weights to 1; nan where a vertex has no mirror image. A joint without a
         partner is its own.
     """
-    partner = image.joints.partner
-    swap = np.where(partner < 0, np.arange(len(partner)), partner)
+    swap = image.mirror.swap
     result = np.full(len(weights), np.nan)
     for first in range(0, len(weights), BLOCK):
         progress("symmetry", first / len(weights))
@@ -163,18 +120,3 @@ def _images(
     vertices[paired] = mirror.vertex[paired, None]
     shares[paired] = [1.0, 0.0, 0.0]
     return vertices, shares
-
-
-def _partners_by_name(names: tuple[str, ...]) -> NDArray[np.intp]:
-    """Return the joint with the same name for the other side, (j,); -1 for none or several."""
-    keys = [plain(name) for name in names]
-    of_key: dict[tuple[str, str], list[int]] = {}
-    for joint, key in enumerate(keys):
-        of_key.setdefault(key, []).append(joint)
-    other = {"l": "r", "r": "l"}
-    partner = np.full(len(names), -1, np.intp)
-    for joint, (base, side) in enumerate(keys):
-        opposite = of_key.get((base, other.get(side, "-")), [])
-        if len(opposite) == len(of_key[base, side]) == 1:
-            partner[joint] = opposite[0]
-    return partner

@@ -181,8 +181,7 @@ def _attached(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.bool
     sums = np.zeros((int(component.max()) + 1, weights.shape[1]))
     np.add.at(sums, component, weights)
     total = sums.sum(axis=1, keepdims=True)
-    most: NDArray[np.bool_] = (sums > ATTACHED * total)[component]
-    return most
+    return np.asarray((sums > ATTACHED * total)[component])
 
 
 def _account(rig: Rig, lost: NDArray[np.float64]) -> tuple[float, tuple[JointLoss, ...]]:

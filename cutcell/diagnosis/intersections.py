@@ -27,12 +27,8 @@ def find_intersections(subject: Subject) -> Iterator[Finding]:
     """Look for faces that pass through others."""
     is_crossed, is_whole = intersecting_faces(subject.points, subject.faces)
     crossed = subject.whole[is_crossed]
-    yield from found(
-        "self-intersections",
-        faces=crossed,
-        least="" if is_whole else "At least ",
-        part=subject.area_share(crossed),
-    )
+    least, part = "" if is_whole else "At least ", subject.area_share(crossed)
+    yield from found("self-intersections", faces=crossed, least=least, part=part)
 
 
 def intersecting_faces(
@@ -45,12 +41,11 @@ def intersecting_faces(
     corners = points[faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
     cells = int(np.clip(np.sqrt(len(faces) / 6), 1, MAX_CELLS))
-    while cells > 1:
+    while True:
         first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
-        if (last - first + 1).prod(axis=1).sum() <= MAX_ENTRIES * len(faces):
+        if cells == 1 or (last - first + 1).prod(axis=1).sum() <= MAX_ENTRIES * len(faces):
             break
         cells //= 2
-    first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
     is_crossed, is_whole = _cross(points, faces, low, high, first, last, cells, MAX_TESTS)
     return is_crossed, bool(is_whole)
 

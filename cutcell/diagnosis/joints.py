@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from .finding import Finding, found
@@ -58,20 +57,10 @@ def _in_one_place(subject: Subject) -> Iterator[Finding]:
     yield from found("zero-length-bones", joints=short, details=details)
     moving = np.flatnonzero(skeleton.deform)
     pairs = moving[cKDTree(joints[moving]).query_pairs(SAME, output_type="ndarray")]
-    pairs = pairs[~_is_link(skeleton.parents, pairs)]
-    coincident = np.unique(pairs)
-    yield from found(
-        "coincident-joints",
-        joints=coincident,
-        details=[*map(name, coincident)],
-        number=len(coincident),
-    )
-
-
-def _is_link(parents: NDArray[np.int32], pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
-    one, other = pairs.T
-    is_link: NDArray[np.bool_] = (parents[one] == other) | (parents[other] == one)
-    return is_link
+    is_link = (skeleton.parents[pairs] == pairs[:, ::-1]).any(axis=1)
+    same = np.unique(pairs[~is_link])
+    details = [*map(name, same)]
+    yield from found("coincident-joints", joints=same, details=details, number=len(same))
 
 
 def _idle(subject: Subject) -> Iterator[Finding]:

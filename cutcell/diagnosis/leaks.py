@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics.fallback import REACHED
-from ..runtime.display import count
-from .finding import Finding, Pose, found, share
+from ..geometry.triangles import label_components
+from ..runtime.display import count, share
+from .finding import Finding, Pose, found
 from .subject import Subject
 from .weights import NOTICED, through_body
 
@@ -70,8 +69,7 @@ def moves_own_part(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
 
     Shapes: weights (n, j).
     """
-    moves: NDArray[np.bool_] = weights.max(axis=0, initial=0) > LEADING
-    return moves
+    return np.asarray(weights.max(axis=0, initial=0) > LEADING)
 
 
 def _stray_advice(weights: NDArray[np.float64]) -> str:
@@ -79,7 +77,7 @@ def _stray_advice(weights: NDArray[np.float64]) -> str:
     if moves.any():
         advice.append("Lock joints that lead a part, such as eyes, to their weights in the file.")
     if not moves.all():
-        advice.append("Exclude controls: --no-deform, or the joint's box on the page.")
+        advice.append("Let controls carry no weight.")
     return " ".join(advice)
 
 
@@ -95,9 +93,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         influenced = np.flatnonzero(follows)
         number[influenced] = np.arange(len(influenced))
         between = number[edges[:, follows[edges].all(axis=0)]]
-        ones = np.ones(between.shape[1], np.int8)
-        graph = coo_array((ones, tuple(between)), shape=(len(influenced),) * 2)
-        label = connected_components(graph, directed=False)[1]
+        label = label_components(between.T, len(influenced))
         total = np.bincount(label, (at_welded[j] * area)[influenced])
         # An island is away from a larger region of the same joint on the same component.
         of = subject.component[influenced]
@@ -119,20 +115,13 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         joints.append(j)
         places.append(islands)
         worst = max(worst, (most, j))
-        lines.append(
-            f"{subject.name(j)}: up to {most:.0%} on {count(len(np.unique(label)), 'island')} of "
-            f"{count(len(islands), 'vertex')}"
-        )
+        where = f"{count(len(np.unique(label)), 'island')} of {count(len(islands), 'vertex')}"
+        lines.append(f"{subject.name(j)}: up to {most:.0%} on {where}")
     if not joints:
         return
     vertices = subject.vertices_at(np.concatenate(places))
-    yield from found(
-        "weight-islands",
-        vertices=vertices,
-        joints=np.array(joints),
-        details=lines,
-        pose=pose_of(subject, worst[1], vertices),
-    )
+    pose, at = pose_of(subject, worst[1], vertices), np.array(joints)
+    yield from found("weight-islands", vertices=vertices, joints=at, details=lines, pose=pose)
 
 
 def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -152,12 +141,9 @@ def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Find
     if len(asymmetric) <= ASYMMETRIC * len(paired):
         return
     gap = np.abs(weights[paired] - other)[differ > UNLIKE]
-    yield from found(
-        "asymmetric-weights",
-        vertices=asymmetric,
-        joints=np.flatnonzero((gap > UNLIKE).any(axis=0)),
-        pose=pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric),
-    )
+    joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
+    pose = pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric)
+    yield from found("asymmetric-weights", vertices=asymmetric, joints=joints, pose=pose)
 
 
 def pose_of(subject: Subject, joint: int, vertices: NDArray[np.intp]) -> Pose:

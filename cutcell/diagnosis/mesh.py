@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import face_edges, unit_normals
 from ..geometry.weld import WELD_TOLERANCE, weld
+from ..graph.surface import WALL
 from .finding import Finding, found
 from .intersections import find_intersections
 from .subject import Subject
@@ -38,6 +39,8 @@ def check_mesh(subject: Subject) -> Iterator[Finding]:
     yield from _stray(subject)
     inverted = np.flatnonzero(subject.graph.inverted)
     yield from found("inverted-faces", faces=inverted, part=subject.area_share(inverted))
+    walls = np.flatnonzero(subject.graph.omitted == WALL)
+    yield from found("hollow-body", faces=walls, part=subject.area_share(walls))
     yield from _cracks(subject)
     yield from _open(subject)
     yield from _non_manifold(subject)
@@ -135,16 +138,10 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
 
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
-    faces = np.sort(subject.faces, axis=1)
-    order = np.lexsort(faces.T)
-    ordered = faces[order]
-    is_copy = np.append(False, (ordered[1:] == ordered[:-1]).all(axis=1))
-    copies = np.flatnonzero(is_copy)
-    first = np.maximum.accumulate(np.where(is_copy, 0, np.arange(len(order))))[copies]
-    # The two sides of a sheet are no duplicates.
-    turn = _rolled(subject.graph.faces[subject.whole[order]])
-    copies = copies[(turn[copies] == turn[first]).all(axis=1)]
-    yield from found("duplicate-faces", faces=np.sort(subject.whole[order[copies]]))
+    # The two sides of a face are no duplicates.
+    faces = _rolled(subject.graph.faces[subject.whole])
+    copies = np.delete(subject.whole, np.unique(faces, axis=0, return_index=True)[1])
+    yield from found("duplicate-faces", faces=copies)
 
 
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -156,14 +153,17 @@ def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
 def _degenerate(subject: Subject) -> Iterator[Finding]:
     corners = subject.points[subject.welded[subject.rig.mesh.faces]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    degenerate = np.flatnonzero(subject.is_collapsed | (subject.areas <= FLAT * longest**2))
+    flat = subject.is_collapsed | (subject.areas <= FLAT * longest**2)
+    degenerate = np.flatnonzero(flat & (subject.graph.omitted == 0))
     if len(degenerate) < len(subject.areas):
         yield from found("degenerate-faces", faces=degenerate)
 
 
 def _vertices(subject: Subject) -> Iterator[Finding]:
-    faces, used = subject.rig.mesh.faces, np.flatnonzero(subject.is_used)
+    faces = subject.rig.mesh.faces
+    used = np.unique(faces)
     if len(used) >= UNWELDED * faces.size and len(faces) > 1:
         left = len(np.unique(subject.welded[used]))
         yield from found("unwelded-vertices", vertices=used, used=len(used), left=left)
-    yield from found("unused-vertices", vertices=np.flatnonzero(~subject.is_used))
+    unused = np.setdiff1d(np.arange(len(subject.welded)), used)
+    yield from found("unused-vertices", vertices=unused)

@@ -13,9 +13,12 @@ from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
 from ..graph.winding import winding_number
 from ..rig import TriangleMesh
-from ..runtime.display import count
+from ..rig.deform_joints.conventions import kinds_by_name
+from ..rig.names import words
+from ..runtime.display import count, share
 from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
-from .finding import Finding, found, share
+from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
+from .finding import Finding, found
 from .subject import Subject, bones_distance
 
 FAR = 1.5
@@ -34,6 +37,10 @@ MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
 BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
+ROOM = 0.05
+"""Around the box of a part, as part of its longest side, where a joint still lies in it."""
+SHARED = 0.1
+"""A part moves with the body that it touches if that gives more weight to the part's joint."""
 
 
 def check_parts(subject: Subject) -> Iterator[Finding]:
@@ -41,11 +48,8 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
     if (subject.graph.node_kind == INTERIOR).any():
         yield from _thin(subject)
     else:
-        yield from found(
-            "no-interior",
-            vertices=np.flatnonzero(subject.is_used),
-            resolution=subject.graph.lattice.resolution,
-        )
+        used, resolution = np.flatnonzero(subject.is_used), subject.graph.lattice.resolution
+        yield from found("no-interior", vertices=used, resolution=resolution)
     if len(subject.rig.skeleton.joints):
         yield from _unreachable(subject)
         yield from _loose(subject)
@@ -87,10 +91,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
 
 
 def _depths(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    places: NDArray[np.intp],
-    resolution: int,
+    points: NDArray[np.float64], faces: NDArray[np.int32], places: NDArray[np.intp], resolution: int
 ) -> NDArray[np.float64]:
     """Measure how thick the body is below vertices, in cells; 0 where nothing is inside.
 
@@ -104,21 +105,16 @@ def _depths(
     inside = winding_number(body, below.reshape(-1, 3)).reshape(len(chosen), -1) >= 0.5
     deep = np.cumprod(inside, axis=1).sum(axis=1)
     depth = np.concatenate([[0], DEPTHS])[deep]
-    if step == 1:
-        return depth
-    nearest: NDArray[np.float64] = depth[cKDTree(points[chosen]).query(points[places])[1]]
-    return nearest
+    return depth if step == 1 else depth[cKDTree(points[chosen]).query(points[places])[1]]
 
 
 def _unreachable(subject: Subject) -> Iterator[Finding]:
     lost = np.flatnonzero((subject.distances.fallback == UNREACHED) & subject.is_used)
     pieces = np.unique(subject.component[subject.welded[lost]])
     is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
-    follows = (
-        "they follow their nearest bones in a straight line"
-        if is_large
-        else "small components follow what they sit on"
-    )
+    follows = "small components follow what they sit on"
+    if is_large:
+        follows = "they follow their nearest bones in a straight line"
     yield from found(
         "unreachable-vertices",
         severity="warning" if is_large else "note",
@@ -142,8 +138,7 @@ def _loose(subject: Subject) -> Iterator[Finding]:
     used = np.unique(subject.component[subject.welded[subject.is_used]])
     if len(used) < 2:
         return
-    faces = subject.graph.faces[subject.whole]
-    bones = subject.distances.bones
+    faces, bones = subject.graph.faces[subject.whole], subject.distances.bones
     containment = bone_containment(subject.points, faces, subject.component, bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
     yield from found(
@@ -176,7 +171,10 @@ def _holder(subject: Subject, vertices: NDArray[np.intp]) -> int:
 
 
 def check_far_parts(subject: Subject) -> Iterator[Finding]:
-    """Look for connected components that rigidly follow a joint far from them."""
+    """Look for connected components that rigidly follow a joint far from them.
+
+    One that follows the same joint as the body that it touches is sound, however far its bones are.
+    """
     weights = subject.weights
     label = subject.component[subject.welded]
     sizes = np.bincount(label)
@@ -191,6 +189,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
         if component[part[0]] >= 0 and joint[part[0]] >= 0 and (joint[part] == joint[part[0]]).all()
         if (nearest := _much_nearer(subject, part, int(joint[part[0]]))) >= 0
     ]
+    far = [one for one in far if not _moves_with_the_body(subject, far, *one[:2])]
     if not far:
         return
     far.sort(key=lambda one: -len(one[0]))
@@ -204,6 +203,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
             for part, j, nearest in far
         ],
         parts=tuple((int(part.min()), nearest) for part, _, nearest in far),
+        empty=tuple(_empty_joint(subject, part) for part, _, _ in far),
     )
 
 
@@ -224,3 +224,40 @@ def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
             nearest, least = int(j), float(np.median(away))
     is_far = followed.min() > MIN_AWAY and np.median(followed) - least > BEYOND
     return nearest if is_far else -1
+
+
+def _empty_joint(subject: Subject, part: NDArray[np.intp]) -> int:
+    """Return the joint without weight that lies in the box of a part, nearest to it; -1 for none.
+
+    Props have such joints. Controls, roots and ends are none by their names.
+    """
+    skeleton, points = subject.rig.skeleton, subject.rig.mesh.vertices[part]
+    low, high = points.min(axis=0), points.max(axis=0)
+    room = ROOM * (high - low).max()
+    inside = ((skeleton.joints >= low - room) & (skeleton.joints <= high + room)).all(axis=1)
+    kinds = np.array([kind for kind, _ in kinds_by_name(skeleton.names)])
+    is_control = np.isin(kinds, ["controls", "roots", "ends"])
+    is_control |= ["ik" in words(name) for name in skeleton.names]
+    empty = np.flatnonzero(inside & ~is_control & ~subject.weights.any(axis=0))
+    away = cKDTree(points).query(skeleton.joints[empty])[0]
+    return int(empty[away.argmin()]) if len(empty) else -1
+
+
+def _moves_with_the_body(
+    subject: Subject,
+    far: list[tuple[NDArray[np.intp], int, int]],
+    part: NDArray[np.intp],
+    joint: int,
+) -> bool:
+    """Return whether the body that a part touches follows the joint of the part."""
+    on_body = np.zeros(len(subject.points), bool)
+    on_body[subject.welded[subject.is_used]] = True
+    for other, _, _ in far:  # several may be wrong together
+        on_body[subject.welded[other]] = False
+    if not on_body.any():
+        return False
+    points = subject.points[subject.welded[part]]
+    distance, corners = nearest_on_body(subject.graph, on_body, points)
+    touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
+    of_joint = subject.weights[subject.first, joint]
+    return float(of_joint[corners[touching]].mean()) > SHARED

@@ -13,6 +13,7 @@ from ..geometry.weld import weld
 from ..graph.lattice import Lattice
 from ..io.gltf.write.faces import with_faces, with_rescaled
 from ..rig import Rig
+from ..rig.rig import normalised
 from ..weights.prune import prune
 from .cleaning import clean
 from .finding import Finding
@@ -23,7 +24,7 @@ from .weights import INFLUENCES, check_weights
 Weights = NDArray[np.float64]
 
 TURNED = "inverted-faces"
-FACES = {TURNED, "duplicate-faces", "degenerate-faces"}
+FACES = {TURNED, "hollow-body", "duplicate-faces", "degenerate-faces"}
 NOTHING = "unchanged, because this repair does not help"
 ROUNDING = 1e-9
 MIN_GAIN = 0.01
@@ -74,12 +75,9 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
         f"{finding.title}: {NOTHING if finding.code in in_vain else finding.repair}."
         for finding in findings
     )
-    return Repaired(
-        rig,
-        done,
-        tuple(finding for finding in findings if finding.code not in in_vain),
-        tuple(finding for finding in findings if finding.code in in_vain),
-    )
+    repaired = tuple(finding for finding in findings if finding.code not in in_vain)
+    unchanged = tuple(finding for finding in findings if finding.code in in_vain)
+    return Repaired(rig, done, repaired, unchanged)
 
 
 def _helps(rig: Rig, weights: NDArray[np.float64], finding: Finding) -> bool:
@@ -107,8 +105,7 @@ def _allowed(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     if rig.allowed is not None:
         permitted = np.where(rig.allowed, weights, 0)
         weights = np.where(permitted.any(axis=1, keepdims=True), permitted, _weights(rig))
-    sums = weights.sum(axis=1, keepdims=True)
-    return np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0)
+    return normalised(weights)
 
 
 def _as_they_are(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:

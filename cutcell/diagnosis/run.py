@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import CutcellError, ParameterError
 from ..geodesics import BoneDistances
-from ..graph.fingerprint import mesh_fingerprint, require_same, skeleton_fingerprint
+from ..graph.fingerprint import data_fingerprint, require_same
 from ..method import check_resolution
 from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
@@ -142,7 +142,7 @@ def diagnose(
         resolution = RESOLUTION if distances is None else distances.graph.lattice.resolution
     resolution = check_resolution(resolution)
     if distances is not None:
-        expected = mesh_fingerprint(rig.mesh) | skeleton_fingerprint(rig.skeleton)
+        expected = data_fingerprint(rig.mesh, rig.skeleton)
         require_same("distances", distances.fingerprint, expected | {"resolution": resolution})
     subject = Subject(rig, resolution, distances, progress=progress)
     findings: list[Finding] = []

@@ -11,16 +11,16 @@ from ..geodesics import BoneDistances, bone_distances
 from ..geodesics.bones import Bones
 from ..geometry.edges import MeshEdges, find_edges
 from ..geometry.segments import distance_to_segment
-from ..geometry.triangles import areas
+from ..geometry.triangles import areas, label_components
 from ..graph import CutCellGraph, build_graph
+from ..graph.orientation.orient import flipped
+from ..graph.surface import WALL
 from ..graph.winding.boundary import Boundary, boundary_of
 from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import Body
-from ..runtime.display import shown_name
+from ..runtime.display import share, shown_name
 from ..runtime.progress import Progress, silent
-from ..weights.rig_falloff.components import label_components
-from .finding import share
 
 OUTSIDE = 0.05
 """Part of the longest side: joints farther from the body have no distances through it."""
@@ -28,10 +28,8 @@ OUTSIDE = 0.05
 
 def bones_distance(bones: Bones, joint: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Measure from points (p, 3) straight to the nearest bone of a joint."""
-    of_joint = np.flatnonzero(bones.joint == joint)
-    return np.min(
-        [distance_to_segment(points, bones.start[b], bones.end[b]) for b in of_joint], axis=0
-    )
+    own = np.flatnonzero(bones.joint == joint)
+    return np.min([distance_to_segment(points, bones.start[b], bones.end[b]) for b in own], axis=0)
 
 
 class Subject:
@@ -51,9 +49,8 @@ class Subject:
     @cached_property
     def graph(self) -> CutCellGraph:
         """The cut-cell graph."""
-        return build_graph(
-            self.rig.mesh, self.resolution, connectivity="any", progress=self.progress
-        )
+        mesh, resolution = self.rig.mesh, self.resolution
+        return build_graph(mesh, resolution, connectivity="any", progress=self.progress)
 
     @cached_property
     def distances(self) -> BoneDistances:
@@ -97,15 +94,15 @@ class Subject:
 
     @cached_property
     def is_used(self) -> NDArray[np.bool_]:
-        """Whether a face uses each vertex of the file, shape (n,)."""
+        """Whether a face uses each vertex of the file, but for walls of voids, shape (n,)."""
         used = np.zeros(len(self.welded), bool)
-        used[self.rig.mesh.faces] = True
+        used[self.rig.mesh.faces[self.graph.omitted != WALL]] = True
         return used
 
     @cached_property
     def is_collapsed(self) -> NDArray[np.bool_]:
-        """Which faces have a repeated corner once vertices are welded, shape (m,)."""
-        a, b, c = self.welded[self.rig.mesh.faces].T
+        """Which faces have a repeated corner in the graph, shape (m,)."""
+        a, b, c = self.graph.faces.T
         return np.asarray((a == b) | (b == c) | (c == a))
 
     @cached_property
@@ -144,8 +141,7 @@ class Subject:
     def vertex_areas(self) -> NDArray[np.float64]:
         """`place_areas` divided among the vertices of the file at each place, shape (n,)."""
         shared = np.bincount(self.welded, minlength=len(self.points))
-        area: NDArray[np.float64] = (self.place_areas / shared)[self.welded]
-        return area
+        return np.asarray((self.place_areas / shared)[self.welded])
 
     @cached_property
     def component(self) -> NDArray[np.int32]:
@@ -155,10 +151,8 @@ class Subject:
     @cached_property
     def body(self) -> Body:
         """Classifier of points near the surface: inside or outside."""
-        faces = np.where(
-            self.graph.inverted[:, None], self.rig.mesh.faces[:, ::-1], self.rig.mesh.faces
-        )
-        return Body(TriangleMesh(self.rig.mesh.vertices, faces))
+        faces = flipped(self.rig.mesh.faces, self.graph.inverted)
+        return Body(TriangleMesh(self.rig.mesh.vertices, faces[self.graph.omitted == 0]))
 
     @cached_property
     def joint_distance(self) -> NDArray[np.float64]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,9 @@ from ..geometry.triangles import normals
 from ..pose import axis_rotation
 from ..pose.stretch import DEGREES as STRETCH_DEGREES
 from ..pose.stretch import MAX_SHARE, followed, measure_stretch, turned_edges
-from .finding import Finding, Pose, found, share
+from ..rig.rig import normalised
+from ..runtime.display import share
+from .finding import Finding, Pose, found
 from .subject import Subject
 
 DEGREES = 45.0
@@ -38,46 +39,29 @@ ALL = 1 - 1e-9
 
 def check_sweep(subject: Subject) -> Iterator[Finding]:
     """Turn one joint after the other and look for edges, faces and volumes that it ruins."""
-    follows = _followed(subject)
+    # By how much each welded vertex follows each joint, (j, k).
+    follows = followed(normalised(subject.weights[subject.first]), subject.rig.skeleton)
     yield from _stretched_surface(subject)
     yield from _torn(subject, follows)
-    faults = list(_poses(subject, follows))
-    yield from _flipped(subject, faults)
-    yield from _lost(subject, faults)
+    poses = list(_poses(subject, follows))
+    yield from _flipped(subject, [flip for flip, _ in poses if flip.size > FLIPPED])
+    yield from _lost(subject, [loss for _, loss in poses if loss.size > LOST])
 
 
-@dataclass(frozen=True, eq=False)
-class _PoseFaults:
-    """Faults in one pose."""
-
-    pose: Pose
-    flipped: NDArray[np.intp]  # of the faces that are whole
-    flipped_area: float
-    lost: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Torn:
-    """Edges that become much longer in one pose."""
+class _Fault(NamedTuple):
+    """A fault in one pose: how large it is, and the elements at fault."""
 
     pose: Pose
-    vertices: NDArray[np.intp]  # welded
-    longest: float
-
-
-def _followed(subject: Subject) -> NDArray[np.float64]:
-    """Return by how much each welded vertex follows each joint, (j, k)."""
-    shares = subject.weights[subject.first]
-    total = shares.sum(axis=1, keepdims=True)
-    shares /= np.where(total > 0, total, 1)
-    return followed(shares, subject.rig.skeleton)
+    size: float
+    elements: NDArray[np.intp] = np.zeros(0, np.intp)
 
 
 def _turns() -> list[tuple[str, float, NDArray[np.float64]]]:
     return [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
 
 
-def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_PoseFaults]:
+def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[tuple[_Fault, _Fault]]:
+    """Yield the faces that flip, of those that are whole, and the volume that is lost, per pose."""
     points, faces = subject.points, subject.faces
     joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
     corners_of = np.ascontiguousarray(faces.T, np.intp)
@@ -116,12 +100,9 @@ def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_PoseFaul
             after = normals(posed[local_faces])
             over = is_unlike & (np.einsum("ij,ij->i", after, expected) < 0)
             left = np.einsum("i,ij,ij->", sign[changing], posed[local_faces[:, 0]], after)
-            yield _PoseFaults(
-                Pose(j, axis, degrees),
-                changing[over],
-                float(np.linalg.norm(before[over], axis=1).sum() / area),
-                (enclosed - left) / volume if volume > 0 else 0.0,
-            )
+            pose, flipped = Pose(j, axis, degrees), np.linalg.norm(before[over], axis=1).sum()
+            lost = (enclosed - left) / volume if volume > 0 else 0.0
+            yield _Fault(pose, float(flipped / area), changing[over]), _Fault(pose, lost)
 
 
 def _stretched_surface(subject: Subject) -> Iterator[Finding]:
@@ -139,16 +120,14 @@ def _stretched_surface(subject: Subject) -> Iterator[Finding]:
 
 
 def _torn(subject: Subject, follows: NDArray[np.float64]) -> Iterator[Finding]:
-    torn = sorted(_torn_edges(subject, follows), key=lambda fault: -fault.longest)
-    yield from found(
-        "stretched-edges",
-        vertices=subject.vertices_at(_joined(fault.vertices for fault in torn)),
-        times=STRETCH,
-        **_evidence(subject, torn, "longest", MIN_STRETCH, "by {} of the longest side"),
-    )
+    torn = list(_torn_edges(subject, follows))
+    vertices = subject.vertices_at(_joined(torn))
+    evidence = _evidence(subject, torn, MIN_STRETCH, "by {} of the longest side")
+    yield from found("stretched-edges", vertices=vertices, times=STRETCH, **evidence)
 
 
-def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Torn]:
+def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Fault]:
+    """Yield the welded ends of edges that become much longer, per pose."""
     edges, turns = subject.edges.edges, _turns()
     joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
     rotations = [turn for _, _, turn in turns]
@@ -160,46 +139,36 @@ def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Tor
             for joint in np.unique(block.joint[is_torn[:, t]]):
                 rows = is_torn[:, t] & (block.joint == joint)
                 vertices = np.unique(edges[block.edge[rows]]).astype(np.intp)
-                yield _Torn(Pose(int(joint), axis, degrees), vertices, float(longer[rows, t].max()))
+                longest = float(longer[rows, t].max())
+                yield _Fault(Pose(int(joint), axis, degrees), longest, vertices)
 
 
-def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    over = _worst(faults, "flipped_area", FLIPPED)
-    faces = subject.whole[_joined(fault.flipped for fault in over)]
-    yield from found(
-        "flipped-faces",
-        vertices=np.unique(subject.rig.mesh.faces[faces]).astype(np.intp),
-        faces=faces,
-        **_evidence(subject, over, "flipped_area", FLIPPED, "{} of the surface"),
-    )
+def _flipped(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
+    faces = subject.whole[_joined(faults)]
+    vertices = np.unique(subject.rig.mesh.faces[faces]).astype(np.intp)
+    evidence = _evidence(subject, faults, FLIPPED, "{} of the surface")
+    yield from found("flipped-faces", vertices=vertices, faces=faces, **evidence)
 
 
-def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
-    evidence = _evidence(subject, _worst(faults, "lost", LOST), "lost", LOST, "{} of the volume")
+def _lost(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
+    evidence = _evidence(subject, faults, LOST, "{} of the volume")
     follows = (subject.weights[:, evidence["joints"]] > MOVES).any(axis=1)
     yield from found("lost-volume", vertices=np.flatnonzero(follows), **evidence)
 
 
-def _worst(faults: list[_PoseFaults], size: str, bound: float) -> list[_PoseFaults]:
-    """Return the faults above a bound, the largest first."""
-    over = [fault for fault in faults if getattr(fault, size) > bound]
-    return sorted(over, key=lambda fault: -getattr(fault, size))
-
-
-def _joined(numbers: Iterable[NDArray[np.intp]]) -> NDArray[np.intp]:
-    return np.unique(np.concatenate([np.zeros(0, np.intp), *numbers]))
+def _joined(faults: Iterable[_Fault]) -> NDArray[np.intp]:
+    return np.unique(np.concatenate([np.zeros(0, np.intp), *(one.elements for one in faults)]))
 
 
 def _evidence(
-    subject: Subject, faults: Sequence[_PoseFaults | _Torn], size: str, bound: float, text: str
+    subject: Subject, faults: Iterable[_Fault], bound: float, text: str
 ) -> dict[str, Any]:
     """Return severity, joints, worst pose, and a line for each joint of its worst pose."""
-    best: dict[int, str] = {}
-    for fault in faults:
-        part = text.format(share(getattr(fault, size), 1))
-        line = f"{subject.name(fault.pose.joint)}: {part}, about {fault.pose.axis}"
-        best.setdefault(fault.pose.joint, line)
-    most = getattr(faults[0], size) if faults else 0.0
+    faults, best = sorted(faults, key=lambda fault: -fault.size), dict[int, str]()
+    for pose, size, _ in faults:
+        line = f"{subject.name(pose.joint)}: {text.format(share(size, 1))}, about {pose.axis}"
+        best.setdefault(pose.joint, line)
+    most = faults[0].size if faults else 0.0
     return {
         "severity": "warning" if most > WARNING_FACTOR * bound else "note",
         "joints": np.array(sorted(best), np.intp),

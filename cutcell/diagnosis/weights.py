@@ -60,13 +60,9 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     differs = np.abs(weights[copies] - weights[first[copies]]).sum(axis=1) > DIFFERENT
     torn = np.unique(place[copies[differs]])
     places = len(np.unique(place[subject.is_used]))
-    yield from found(
-        "torn-seams",
-        severity="warning" if len(torn) > SEAMS * places else "note",
-        vertices=subject.vertices_at(torn),
-        torn=torn,
-        places=places,
-    )
+    severity = "warning" if len(torn) > SEAMS * places else "note"
+    vertices = subject.vertices_at(torn)
+    yield from found("torn-seams", severity=severity, vertices=vertices, torn=torn, places=places)
 
 
 def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -74,12 +70,11 @@ def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]
     vertex, joint = np.nonzero((weights > NOTICED) & subject.measurable)
     is_reached = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[is_reached], joint[is_reached]
-    nearest = distances.least
     through = through_body(subject, vertex, joint)
     points, straight = subject.points[subject.welded[vertex]], np.empty(len(vertex))
     for j in np.unique(joint):
         straight[joint == j] = bones_distance(distances.bones, j, points[joint == j])
-    beyond = through - nearest[vertex]
+    beyond = through - distances.least[vertex]
     with np.errstate(invalid="ignore"):
         leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR)
     leaked &= np.isfinite(beyond)

@@ -14,7 +14,7 @@ from ..errors import SkeletonError
 from ..geodesics import BoneDistances
 from ..geodesics.bone_extents.skins import method_per_character
 from ..graph import CutCellGraph, build_graph
-from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
+from ..graph.fingerprint import differences, distance_fingerprint, graph_fingerprint, require_same
 from ..graph.lattice import Lattice
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
@@ -107,9 +107,9 @@ def bind(
     edits = Edits() if edits is None else edits
     rig = edited_rig(rig, edits)
     _check(rig, method)
-    if graph is None and resolution is None:
-        method = method_per_character(rig, method)
-    elif graph is not None:
+    if resolution is None:
+        method = method_per_character(rig, method, graph)
+    if graph is not None:
         require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
     steps = bind_steps(
         rig, method, edits, graph, smoothing=smoothing, symmetric=symmetric, locked=locked
@@ -189,7 +189,7 @@ def layer_context(rig: Rig, context: Context, reach: Computed, layer: Layer) -> 
         graph = build_graph(rig.mesh, method=method, progress=context.progress)
     else:
         expected = distance_fingerprint(rig.skeleton, method, rig.allowed)
-        is_same = expected.items() <= context.distances.fingerprint.items()
+        is_same = not differences(context.distances.fingerprint, expected)
         if is_same and joints_measured(content, method) == joints_measured(reach, context.method):
             distances = context.distances
     steps = computed_steps(rig, method, content, graph, distances, vertices)

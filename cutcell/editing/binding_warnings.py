@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -11,11 +12,12 @@ from numpy.typing import NDArray
 from ..binding import Binding
 from ..errors import LocatedWarning
 from ..geodesics import FALLBACK_REASONS, BoneDistances
+from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
-from ..method import ANIMATION
+from ..method import ANIMATION, MAX_RESOLUTION
 from ..pose.stretch import DEGREES, MAX_SHARE, Stretch
 from ..rig import Rig
-from ..runtime.display import count, listed, shown_name
+from ..runtime.display import count, listed, share, shown_name
 from .edits import Edits
 from .layers import RigSources, vertices_of
 from .layers.contents import Attached, Filled, Locked
@@ -25,6 +27,10 @@ from .locks import locked_joints
 
 FINDINGS = {1: "unused-vertices", 2: "unreachable-vertices"}
 """Findings of vertices by the reason why no path reaches them."""
+BONE_CELLS = 1.5
+"""Lattice cells that a bone must be long to have nodes of its own."""
+NEAR_BONE = 200
+"""Vertices that are compared with all bones."""
 Shown = (Filled, Attached, Painted)
 """Contents that a person has chosen the joints of."""
 SAME = 1e-6
@@ -37,7 +43,7 @@ def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
     warnings = (
         *_of_distances(distances.graph, distances),
         *_inferred_bones(rig, distances),
-        *_weightless(rig, binding.weights),
+        *_weightless(rig, distances, binding.weights),
         *_stretches(rig, binding.stretch),
         *_blocked_by_locks(rig, distances.graph, edits.layers),
     )
@@ -80,14 +86,35 @@ def _inferred_bones(rig: Rig, distances: BoneDistances) -> Iterator[str]:
         )
 
 
-def _weightless(rig: Rig, weights: NDArray[np.float64]) -> Iterator[str]:
+def _weightless(rig: Rig, distances: BoneDistances, weights: NDArray[np.float64]) -> Iterator[str]:
     deform = rig.skeleton.deform
     weightless = deform & ~weights.any(axis=0)
     if weightless.any():
+        finer = _finer_resolution(distances, weightless)
         yield (
             f"{weightless.sum()} of {deform.sum()} joints that deform get no weight: "
             f"{_names(rig, weightless)}"
+            + f". Bones are shorter than a lattice cell: choose a resolution of {finer}"
+            * (finer > 0)
         )
+
+
+def _finer_resolution(distances: BoneDistances, joints: NDArray[np.bool_]) -> int:
+    """Return the resolution that the bones of some joints (j,) need; 0 if it does not decide.
+
+    Bones far shorter than a lattice cell begin at the same nodes. One that no vertex is nearest
+    to gets no weight at any resolution.
+    """
+    bones, graph, needed = distances.bones, distances.graph, 0.0
+    points = graph.nodes[: graph.first_point]
+    cells = BONE_CELLS / np.maximum(np.linalg.norm(bones.end - bones.start, axis=1), 1e-9)
+    is_short = (cells > graph.lattice.resolution) & (cells <= MAX_RESOLUTION)
+    for b in np.flatnonzero(is_short & joints[bones.joint]):
+        away = distance_to_segment(points, bones.start[b], bones.end[b])
+        near = points[np.argsort(away, kind="stable")[:NEAR_BONE], None]
+        if (distance_to_segment(near, bones.start, bones.end).argmin(axis=1) == b).any():
+            needed = max(needed, cells[b])
+    return math.ceil(needed / 16) * 16
 
 
 def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
@@ -95,10 +122,10 @@ def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
     if stretch.share > MAX_SHARE and stretch.joint is not None:
         place = ", ".join(f"{value:.3g}" for value in stretch.position or ())
         yield LocatedWarning(
-            f"{stretch.share:.0%} of the surface stretches or shrinks to more than twice when "
-            f"joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst at "
-            f"vertex {stretch.vertex} ({place}). Check which joints deform near there, or bind "
-            "that part separately",
+            f"{share(stretch.share, 1)} of the surface stretches or shrinks to more than twice "
+            f"when joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst "
+            f"at vertex {stretch.vertex} (at {place} in file units). Check which joints deform "
+            "near there, or bind that part separately",
             "stretched-surface",
         )
 

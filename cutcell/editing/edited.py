@@ -58,12 +58,16 @@ def edited_rig(rig: Rig, edits: Edits) -> Rig:
     deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
     for name, one in edits.joints.items():
         joint = joint_index(rig.skeleton, name)
+        if one.partner:
+            joint_index(rig.skeleton, one.partner)
         deform[joint] = deform[joint] if one.deform is None else one.deform
         joints[joint] = joints[joint] if one.position is None else one.position
     if rig.skeleton.deform.any() and not deform.any():
         raise SkeletonError("by the edits no joint of the skeleton may carry weight")
     if not np.array_equal(deform, rig.skeleton.deform):
         rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    if rig.partners != edits.partners:
+        rig = replace(rig, partners=edits.partners)
     return rig.with_joints(joints)
 
 

@@ -38,6 +38,9 @@ class JointEdit:
         The file does not have this joint. It needs a position and a parent.
     was : str, optional
         Name of the joint in the file, if it was renamed.
+    partner : str, optional
+        The joint on the other side, itself for one of the middle, "" for none; by names and
+        positions when left out. It is the other's partner, too.
     """
 
     deform: bool | None = None
@@ -45,6 +48,7 @@ class JointEdit:
     parent: str | None = None
     added: bool = False
     was: str | None = None
+    partner: str | None = None
 
     def __post_init__(self) -> None:
         if self.deform is not None:
@@ -52,7 +56,7 @@ class JointEdit:
         if self.position is not None:
             assign(self, position=_position(self.position))
         check_flag("added", self.added)
-        for what in ("parent", "was"):
+        for what in ("parent", "was", "partner"):
             name = getattr(self, what)
             if name is not None and not isinstance(name, str):
                 raise ParameterError(f"{what} must be the name of a joint, not {shown(name)}")
@@ -134,6 +138,12 @@ class Edits:
     def __bool__(self) -> bool:
         """Return whether there are any edits."""
         return bool(self.joints or self.removed or self.layers or self.base == "file")
+
+    @property
+    def partners(self) -> dict[str, str]:
+        """The joints on the other side that were set, by joint."""
+        joints = self.joints.items()
+        return {name: one.partner for name, one in joints if one.partner is not None}
 
     @property
     def structural(self) -> bool:

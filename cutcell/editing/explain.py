@@ -21,7 +21,7 @@ from ..runtime.progress import Progress, silent
 from ..weights.context import Context, Step, run
 from .absence import absence_of, factors_of, rank_of
 from .bind import bind_steps
-from .edited import edited_rig
+from .edited import edited_rig, joints_measured
 from .edits import Edits
 from .layers.layer import Layer
 from .locks import joint_index
@@ -190,12 +190,12 @@ def explain(
     vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
     edits = Edits() if edits is None else edits
     rig = edited_rig(rig, edits)
-    measured_at = None if distances is None else distances.graph.lattice.resolution
-    if resolution is None and measured_at != method.resolution:  # as `bind` does
-        method = method_per_character(rig, method)
+    if resolution is None:  # as `bind` does
+        method = method_per_character(rig, method, None if distances is None else distances.graph)
     if distances is not None:
         expected = graph_fingerprint(rig.mesh, method)
-        expected |= distance_fingerprint(rig.skeleton, method, rig.allowed)
+        measured = joints_measured(edits.reach, method)
+        expected |= distance_fingerprint(rig.skeleton, method, rig.allowed, *measured)
         require_same("distances", distances.fingerprint, expected)
     context = Context(method, rig.allowed, progress)
     rows: dict[str, NDArray[np.float64]] = {}

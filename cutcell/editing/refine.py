@@ -8,6 +8,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import WeightsError
 from ..method import ANIMATION, Method, MethodName, method_of
 from ..rig import Rig
 from ..rig.checks import check_flag, check_integer
@@ -69,9 +70,11 @@ def refine_weights(
     Raises
     ------
     ParameterError, MeshError, WeightsError
-        An option is out of range, or the rig does not allow it.
+        An option is out of range, the rig does not allow it, or the weights have another shape.
     """
     layers = refinement(rig, smoothing, symmetric, locked)
+    if np.shape(weights) != (shape := (len(rig.mesh.vertices), len(rig.skeleton.joints))):
+        raise WeightsError(f"weights has the shape {np.shape(weights)}, expected {shape}")
     return apply_layers(weights, layers, RigSources(rig, method_of(method, **options)))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from ..binding import Binding
 from ..errors import FileError, ParameterError
 from ..io import save
 from ..io.files import naming
-from ..io.gltf.container import MAGIC, json_bytes, read_document
+from ..io.gltf.container import json_bytes, pack_glb, read_document
 from ..method import ANIMATION
 from ..rig import Rig
 from ..runtime.writing import write_all
@@ -31,8 +30,6 @@ from .layers.packing import naming as naming_part
 KEY = "cutcell"
 """Entry of a document's asset extras."""
 GLTF = (".glb", ".gltf", ".vrm")
-HEAD = 20
-"""Bytes of a GLB before its JSON: those of the container, and of its first chunk."""
 ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
 """Source of the numbers of a file, and their unit."""
 
@@ -122,21 +119,13 @@ def settings_with_layers(
 def save_bound(path: Path, rig: Rig, settings: Mapping[str, Any]) -> tuple[Path, ...]:
     """Save a rig as GLB, glTF or VRM with settings in the asset's extras; return the files."""
     files = save(path, rig)
-    data = path.read_bytes()
-    start, end = 0, len(data)
-    if data.startswith(MAGIC):
-        start, end = HEAD, HEAD + int.from_bytes(data[12:16], "little")
-    document = json.loads(data[start:end])
-    extras = document["asset"].setdefault("extras", {})
+    saved = read_document(path)
+    extras = saved.json["asset"].setdefault("extras", {})
     if not isinstance(extras, dict):
         return files  # glTF allows any value; another program wrote this one
     extras[KEY] = dict(settings)
-    text = json_bytes(document)
-    if start:
-        text += b" " * (-len(text) % 4)
-        size = HEAD + len(text) + len(data) - end
-        text = data[:8] + struct.pack("<II", size, len(text)) + data[16:HEAD] + text
-    write_all({path: text + data[end:]})
+    text = json_bytes(saved.json)
+    write_all({path: pack_glb(text, saved.buffers[0], saved.chunks) if saved.binary else text})
     return files
 
 

@@ -14,6 +14,7 @@ from scipy.spatial.distance import cdist
 from ..errors import MeshError, SkeletonError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
+from ..rig.names import plain
 
 VERTEX_TOLERANCE = 1e-3
 """Maximum distance of a vertex's partner from its mirror image, in bounding-box diagonals."""
@@ -33,6 +34,7 @@ class Mirror:
     position: float  # where the plane cuts the axis, in the file's units
     vertex: NDArray[np.intp]  # (n,), itself on the plane
     joint: NDArray[np.intp]  # (j,)
+    how: tuple[str, ...] = ()  # (j,), what pairs each joint: "set", "name" or "place"; "" for none
 
     @property
     def swap(self) -> NDArray[np.intp]:
@@ -55,7 +57,7 @@ def find_mirror(rig: Rig) -> Mirror:
         vertex = _vertex_partners(near, welded)
         score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
         if score > share:
-            best, share = Mirror(axis, position, vertex, joint), score
+            best, share = _mirror(rig, axis, position, vertex, joint), score
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
     if best is None or matched < MIN_SHARE:
         raise MeshError(
@@ -74,15 +76,16 @@ def joint_mirror(rig: Rig) -> Mirror:
     joints = rig.skeleton.joints
     if not len(joints):
         raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
-    best, share = None, 0.0
+    best, share, matched = None, 0.0, 0.0
     tolerance = JOINT_TOLERANCE * mesh_diagonal(rig)
     for axis, position, joint in mirror_planes(rig):
         gap = reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
         exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / tolerance
         score = float((joint >= 0).mean()) + 0.1 * exact
         if score > share:
-            best, share = Mirror(axis, position, np.empty(0, np.intp), joint), score
-    if best is None or (best.joint >= 0).mean() < MIN_SHARE:
+            share, matched = score, float((joint >= 0).mean())
+            best = _mirror(rig, axis, position, np.empty(0, np.intp), joint)
+    if best is None or matched < MIN_SHARE:
         raise SkeletonError(
             f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
             "joints have a partner on the other side"
@@ -102,7 +105,7 @@ def mirror_planes(rig: Rig) -> Iterator[tuple[int, float, NDArray[np.intp]]]:
         middle = float(rig.mesh.bounds[:, axis].mean())
         median = float(np.median(rig.skeleton.joints[:, axis]))
         for position in dict.fromkeys((0.0, middle, median)):
-            joint = _joint_partners(rig.skeleton, axis, position, tolerance)
+            joint = _partners_there(rig.skeleton, axis, position, tolerance)
             if np.any((joint >= 0) & (joint != np.arange(len(joint)))):
                 yield axis, position, joint
 
@@ -173,24 +176,67 @@ def _vertex_partners(near: NDArray[np.intp], welded: NDArray[np.int32]) -> NDArr
     return np.where((near == every)[welded], np.arange(len(welded)), partner)
 
 
-def _joint_partners(
+def _partners_there(
     skeleton: Skeleton, axis: int, position: float, tolerance: float
 ) -> NDArray[np.intp]:
-    """Pair joints by position; of several at one position, those whose branches lie alike."""
-    joints = skeleton.joints
+    """Pair joints in mirrored positions: by name, then those whose branches lie alike.
+
+    By position alone no joint that may carry weight is paired with one that may not: controls lie
+    where bones do.
+    """
+    joints, name = skeleton.joints, partners_by_name(skeleton.names)
     branch = skeleton.subtree @ joints / skeleton.subtree.sum(axis=1, keepdims=True)
     gap = cdist(reflected(joints, axis, position), joints)
+    every = np.arange(len(joints))
+    named = (name >= 0) & (gap[every, name] <= np.minimum(gap[every, every], tolerance))
     branch_gap = cdist(reflected(branch, axis, position), branch)
     depth = skeleton.subtree.sum(axis=0)
     unlike = np.abs(depth[:, None] - depth) / len(joints)
-    cost = np.where(gap <= tolerance, (gap + branch_gap) / tolerance + unlike, 1e6)
+    can = (gap <= tolerance) & (skeleton.deform[:, None] == skeleton.deform)
+    cost = np.where(can, (gap + branch_gap) / tolerance + unlike, 1e6)
     cost = (cost + cost.T) / 2  # a pair is one from either side
+    cost[named] = 1e6
+    cost[named, name[named]] = -1e6
     partner = linear_sum_assignment(cost)[1]
-    near = gap[np.arange(len(joints)), partner] <= tolerance
-    partner = np.where(near, partner, -1)
-    mutual = (partner >= 0) & (partner[partner] == np.arange(len(joints)))
+    partner = np.where(cost[every, partner] < 1e6, partner, -1)
+    mutual = (partner >= 0) & (partner[partner] == every)
     partner = np.where(mutual, partner, -1)
     # A chain is no mirror image of itself from end to start: parents must be partners too.
     parents = skeleton.parents
     above = np.where(parents >= 0, partner[parents], -1)
-    return np.where((partner >= 0) & (parents[partner] == above), partner, -1)
+    return np.where((partner >= 0) & ((parents[partner] == above) | named), partner, -1)
+
+
+def _mirror(
+    rig: Rig, axis: int, position: float, vertex: NDArray[np.intp], there: NDArray[np.intp]
+) -> Mirror:
+    """Add pairs that a person set, and pairs of names that are elsewhere, to those (j,) there."""
+    names, partner = rig.skeleton.names, there.copy()
+    by_name = partners_by_name(names)
+    moved = np.flatnonzero((by_name >= 0) & (there < 0) & (there[by_name] < 0))
+    partner[moved] = by_name[moved]
+    how = np.where(partner < 0, "", np.where(partner == by_name, "name", "place"))
+    number = {name: joint for joint, name in enumerate(names)}
+    for one, other in rig.partners.items():
+        both = [number[name] for name in (one, other) if name in number]
+        parted = both + [int(partner[joint]) for joint in both if partner[joint] >= 0]
+        partner[parted], how[parted] = -1, ""
+        how[both] = "set"
+        if len(both) == 2:
+            partner[both] = both[::-1]
+    return Mirror(axis, position, vertex, partner, tuple(how.tolist()))
+
+
+def partners_by_name(names: tuple[str, ...]) -> NDArray[np.intp]:
+    """Return the joint with the same name for the other side, (j,); -1 for none or several."""
+    keys = [plain(name) for name in names]
+    of_key: dict[tuple[str, str], list[int]] = {}
+    for joint, key in enumerate(keys):
+        of_key.setdefault(key, []).append(joint)
+    other = {"l": "r", "r": "l"}
+    partner = np.full(len(names), -1, np.intp)
+    for joint, (base, side) in enumerate(keys):
+        opposite = of_key.get((base, other.get(side, "-")), [])
+        if len(opposite) == len(of_key[base, side]) == 1:
+            partner[joint] = opposite[0]
+    return partner

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import WeightsError
 from ..graph import CutCellGraph
-from ..rig import Skeleton
+from ..rig.checks import as_array
 from ..runtime.progress import Progress
 from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
 
 
-def check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.bool_]) -> None:
-    """Refuse a wrong shape, and vertices without any joint that carries weight."""
-    shape = (len(graph.vertex_node), len(skeleton.joints))
-    if allowed.shape != shape:
-        raise WeightsError(f"allowed has the shape {allowed.shape}, expected {shape}")
-    bad = np.flatnonzero(~allowed[:, skeleton.deform].any(axis=1))
+def check_allowed(
+    graph: CutCellGraph, deform: NDArray[np.bool_], allowed: ArrayLike
+) -> NDArray[np.bool_]:
+    """Return which joints vertices may follow; each needs one that carries weight (`deform`)."""
+    shape = (len(graph.vertex_node), len(deform))
+    allowed = as_array(allowed, np.bool_, shape, "allowed", WeightsError)
+    bad = np.flatnonzero(~allowed[:, deform].any(axis=1))
     if len(bad):
         raise WeightsError(
             f"vertex {bad[0]} may follow no joint that carries weight "
             f"({len(bad)} vertices are so); check which joints its skin lists"
         )
+    return allowed
 
 
 def allowed_distances(

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
 from ..rig.checks import check_choice
 
-TIE = 1e-9
-"""Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
-a lattice cell has eight nearest nodes, and rounding must not choose among them."""
+LONGEST = 20.0
+"""Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ def bone_samples(
         In the unit cube.
     samples : int
         N, points on each bone, both ends included; a single one is in the middle. With
-        connectivity "any" at least one for each lattice cell.
+        connectivity "any" at least one for each lattice cell, up to a length of `LONGEST`.
 
     Returns
     -------
@@ -138,12 +138,29 @@ def bone_samples(
     bone : array, shape (p,)
         The bone of each point.
     """
-    counts = np.full(len(bones.joint), samples)
+    counts, way = np.full(len(bones.joint), samples), bones.end - bones.start
     if graph.connectivity == "any":
         # Every lattice point along the bone must have line of sight to it.
-        length = np.linalg.norm(bones.end - bones.start, axis=1)
-        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+        length = np.linalg.norm(way, axis=1)
+        way = way * (LONGEST / np.maximum(length, LONGEST))[:, None]
+        cells = (np.minimum(length, LONGEST) - TIE) * graph.lattice.resolution
+        counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]
     share = np.where(counts > 1, 0.0, 0.5)[bone] + number / np.maximum(counts - 1, 1)[bone]
-    return bones.start[bone] + share[:, None] * (bones.end - bones.start)[bone], bone
+    return bones.start[bone] + share[:, None] * way[bone], bone
+
+
+def least_of_joints(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:
+    """Reduce distances of bones (b, t) to those of the joints that have bones."""
+    first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
+    return np.minimum.reduceat(distance, first, axis=0)
+
+
+def per_joint(distance: NDArray[np.float64], bones: Bones, joints: int) -> NDArray[np.float64]:
+    """Return distances of all joints (j, p), from those of joints that have bones."""
+    if len(distance) == joints:
+        return distance
+    result = np.full((joints, distance.shape[1]), np.inf)
+    result[np.unique(bones.joint)] = distance
+    return result

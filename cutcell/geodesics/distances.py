@@ -17,10 +17,11 @@ from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..rig.inputs import SkeletonLike, as_skeleton
+from ..rig.rig import check_units
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
 from .allowed import allowed_distances, check_allowed
-from .bones import Bones, Sources
+from .bones import Bones, Sources, least_of_joints, per_joint
 from .fallback import REACHED, straight_to_nearest, why_not_reached
 from .solver import BoneDistanceSolver
 from .tracing.inside import Inside
@@ -223,7 +224,7 @@ def bone_distances(
     MeshError
         The mesh has collapsed into points.
     SkeletonError
-        No joints, or one too far out to compute with.
+        No joints, or one too far away from the mesh: they are in different units.
     WeightsError
         `allowed` has the wrong shape or leaves a vertex without any joint.
 
@@ -243,17 +244,19 @@ def bone_distances(
     check_positions(skeleton.joints, "joint", SkeletonError)
     solver = graph if isinstance(graph, BoneDistanceSolver) else BoneDistanceSolver(graph)
     graph = solver.graph
+    offset = graph.lattice.offset
+    check_units(skeleton, graph.lattice.to_file([offset, 1 - offset]))
     if graph.connectivity != "any":
         nearest_joints = None
     progress("distances", 0.0)
     if allowed is not None:
-        check_allowed(graph, skeleton, allowed)
+        allowed = check_allowed(graph, skeleton.deform, allowed)
         allowed = None if allowed.all() else allowed
     bones, sources = solver.place(skeleton, method, allowed, progress)
     if allowed is None:
         node = solver.targets
         by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
-        joint = _per_joint(by_node, bones, len(skeleton.joints))
+        joint = per_joint(by_node, bones, len(skeleton.joints))
     else:  # per vertex, as those at one place may differ
         node = graph.vertex_node
         joint, nearest_joints = allowed_distances(
@@ -264,7 +267,7 @@ def bone_distances(
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
-        joint[:, lost] = _per_joint(_least(straight, bones), bones, len(joint))
+        joint[:, lost] = per_joint(least_of_joints(straight, bones), bones, len(joint))
     of_vertices = None if allowed is None else joint
     if allowed is None:
         fallback = fallback[graph.vertex_node]
@@ -273,29 +276,6 @@ def bone_distances(
     distances = BoneDistances(
         joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )
-    fingerprint = {**graph.fingerprint, **distance_fingerprint(skeleton, method, allowed)}
-    return distances.identified(fingerprint if graph.fingerprint else {})
-
-
-def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
-    """Compute the distances of given bones to each vertex along a graph, without a fallback."""
-    solver = BoneDistanceSolver(graph)
-    sources = solver.sources(bones, samples)
-    joint = _per_joint(solver.paths(bones, sources), bones, joints)
-    why = why_not_reached(solver, bones, sources, joint, solver.targets, None)
-    return BoneDistances(joint, None, None, bones, sources, why[graph.vertex_node], solver)
-
-
-def _per_joint(distance: NDArray[np.float64], bones: Bones, joints: int) -> NDArray[np.float64]:
-    """Return distances of all joints (j, p), from those of joints that have bones."""
-    if len(distance) == joints:
-        return distance
-    result = np.full((joints, distance.shape[1]), np.inf)
-    result[np.unique(bones.joint)] = distance
-    return result
-
-
-def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:
-    """Reduce distances of bones (b, t) to those of the joints that have bones."""
-    first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
-    return np.minimum.reduceat(distance, first, axis=0)
+    within = within if nearest_joints else np.inf
+    own = distance_fingerprint(skeleton, method, allowed, nearest_joints, within, nearest)
+    return distances.identified(graph.fingerprint and {**graph.fingerprint, **own})

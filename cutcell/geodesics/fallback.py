@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.segments import distance_to_segment
+from ..geometry.vectors import TIE
 from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
 
@@ -59,5 +60,5 @@ def straight_to_nearest(
         distance = np.where(allowed.T, distance, np.inf)
     if nearest < len(distance):
         limit = np.partition(distance, nearest - 1, axis=0)[nearest - 1]
-        distance = np.where(distance <= limit, distance, np.inf)
+        distance = np.where(distance <= limit + TIE, distance, np.inf)
     return distance

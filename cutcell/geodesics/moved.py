@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph.fingerprint import skeleton_fingerprint
+from ..graph.fingerprint import APPROXIMATE
 from ..method import Method
 from ..rig import Skeleton
 from .any_angle.theta_star import ON_BONE
@@ -19,6 +19,7 @@ from .fallback import REACHED
 class MovedDistances:
     """Measures the distances of joints whose bones have moved; the others keep theirs.
 
+    The fingerprint of results is `APPROXIMATE`, so that they are not taken for exact ones.
     With connectivity 6 and 26 the results equal `bone_distances`, except that leaf bones are
     translated instead of fitted again, and vertices that no path reaches keep their distances.
     With any angle, paths end where the distance of the nearest joint was `within` times smaller:
@@ -74,7 +75,7 @@ class MovedDistances:
             bones=bones,
             sources=distances.sources.replaced(is_moved, sources),
             skeleton=skeleton,
-        ).identified({**distances.fingerprint, **skeleton_fingerprint(skeleton)})
+        ).identified(APPROXIMATE)
 
     def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distances of all joints, with those of some joints replaced."""

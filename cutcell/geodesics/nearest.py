@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..errors import MeshError
+from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 
 LEAF_SIZE = 32
@@ -44,15 +45,13 @@ class NodeTree:
             raise MeshError("every triangle of the mesh has collapsed into a point")
         return cls(graph.nodes, graph.connected, graph.lattice.resolution)
 
-    def nearest(
-        self, points: NDArray[np.float64], tie: float
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Find the nearest nodes of each point: all that are equally near up to rounding.
+    def nearest(self, points: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Find the nearest nodes of each point: the eight around the middle of a cell are equal.
 
         Shapes: points (p, 3); returns point, node (f,).
         """
         distance, _ = self._tree.query(points)
-        nearest = self._tree.query_ball_point(points, distance * (1 + tie), return_sorted=True)
+        nearest = self._tree.query_ball_point(points, distance + TIE, return_sorted=True)
         point = np.repeat(np.arange(len(points)), [len(nodes) for nodes in nearest])
         return point, self._number[[node for nodes in nearest for node in nodes]]
 
@@ -74,5 +73,5 @@ class NodeTree:
 
     def _keys(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the key of the lattice cell of each point (p, 3)."""
-        x, y, z = np.floor(points.T * self._resolution).astype(np.int64)
+        x, y, z = np.floor((points.T + TIE) * self._resolution).astype(np.int64)
         return (x * CELLS_ACROSS + y) * CELLS_ACROSS + z

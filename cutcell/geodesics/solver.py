@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from ..runtime.threads import submit
 from .any_angle.contraction import Contraction, contract
 from .any_angle.theta_star import any_angle_paths, least_distances
 from .bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
-from .bones import TIE, Bones, Sources, bone_samples, bone_segments
+from .bones import Bones, Sources, bone_samples, bone_segments
 from .nearest import NodeTree
 from .shortest_paths import shortest_paths
 
@@ -45,6 +46,10 @@ class BoneDistanceSolver:
         self.graph = graph
         self.tree = NodeTree.of(graph)
         self.targets = np.arange(graph.first_point, dtype=np.int32)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the graph alone: all else is computed from it, some by another thread."""
+        return BoneDistanceSolver, (self.graph,)
 
     @cached_property
     def contraction(self) -> Contraction | None:
@@ -151,7 +156,7 @@ def find_sources(
     In a contracted graph, sources are the representatives of the nearest nodes.
     """
     points, bone = bone_samples(graph, bones, samples)
-    point, nearest = tree.nearest(points, TIE)
+    point, nearest = tree.nearest(points)
     node = nearest if contraction is None else contraction.representative(nearest)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     of, begin = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..runtime.compiled import compiled
-from .vectors import between, cross, dot, length, triangle_normal
+from .vectors import TIE, between, cross, dot, length, triangle_normal
 
 THINNEST = 1e-4
 """Minimum height of a triangle, as part of its longest side: needles would outweigh all."""
@@ -53,18 +53,18 @@ def vertex_areas(points, faces):
 
 @compiled
 def vertex_normals(points, faces):
-    """Return unit normals, shape (k, 3): averages of faces by area; zero where there is none."""
-    normals = np.zeros((len(points), 3))
+    """Return unit normals, shape (k, 3): averages of faces by area; zero where they cancel out."""
+    normals, total = np.zeros((len(points), 3)), np.zeros(len(points))
     for f in range(len(faces)):
         n = triangle_normal(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
         for corner in range(3):
+            total[faces[f, corner]] += length(n)
             for axis in range(3):
                 normals[faces[f, corner], axis] += n[axis]
     for k in range(len(points)):
         size = length(normals[k])
-        if size > 0:
-            for axis in range(3):
-                normals[k, axis] /= size
+        for axis in range(3):
+            normals[k, axis] = normals[k, axis] / size if size > TIE * total[k] else 0.0
     return normals
 
 

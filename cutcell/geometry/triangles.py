@@ -1,7 +1,9 @@
-"""Normals, areas, edges and closest points of triangles."""
+"""Normals, areas, edges, connected components and closest points of triangles."""
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from .segments import closest_on_segment
 
@@ -29,6 +31,14 @@ def areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 def face_edges(faces: NDArray) -> NDArray:
     """Return the three edges of each face, lower vertex first, shape (3 m, 2), with repeats."""
     return np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+
+
+def label_components(faces: NDArray, count: int) -> NDArray[np.int32]:
+    """Label the connected components of `count` vertices that faces or edges (m, 3 or 2) join."""
+    links = faces[:, :-1].ravel(), faces[:, 1:].ravel()
+    graph = coo_array((np.ones(len(links[0]), np.bool_), links), shape=(count, count))
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
 
 
 def closest_on_triangle(

@@ -6,6 +6,11 @@ import numpy as np
 
 from ..runtime.compiled import compiled
 
+TIE = 1e-9
+"""Lengths in the unit cube that differ by no more are equal, and so are parts of a whole: rounding,
+which is far smaller, must not choose among them. The smallest lattice cell is a million times as
+large."""
+
 
 @compiled(inline="always")
 def between(a, b):

@@ -22,8 +22,8 @@ def weld(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Merge points that lie within `tolerance` of each other, also in chains.
 
-    The result is sorted along an oblique direction, so it does not depend on the order of the
-    input.
+    Merged points lie in the middle of their bounding box. The result is sorted along an oblique
+    direction, so it does not depend on the order of the input.
 
     Shapes: points (n, 3); returns welded (k, 3), index (n,).
     """
@@ -37,16 +37,16 @@ def weld(
     # Rounding changes a projection by less than this; per point, so that one outlier far away
     # does not widen the search for all.
     slack = tolerance + 8 * np.finfo(float).eps * np.abs(ordered).max(axis=1, initial=0)
-    first = _merge(projection, ordered, tolerance, slack)
+    first, middle = _merge(projection, ordered, tolerance, slack)
     is_first = first == np.arange(len(points))
     index = np.empty(len(points), np.int32)
     index[order] = (np.cumsum(is_first) - 1)[first]
-    return ordered[is_first], index
+    return middle[is_first], index
 
 
 @compiled
 def _merge(projection, points, tolerance, slack):
-    """Return the first point of each point's group (disjoint sets, Tarjan 1975), shape (n,)."""
+    """Return each point's group's first point (disjoint sets, Tarjan 1975) and, there, middle."""
     count = len(points)
     first = np.arange(count)
     for i in range(count):
@@ -60,9 +60,13 @@ def _merge(projection, points, tolerance, slack):
             if squared == 0:  # j lies at the same point and will meet whatever follows
                 break
             j += 1
+    low, high = points.copy(), points.copy()
     for i in range(count):
         first[i] = first[first[i]]  # those before are final
-    return first
+        for axis in range(3):
+            low[first[i], axis] = min(low[first[i], axis], points[i, axis])
+            high[first[i], axis] = max(high[first[i], axis], points[i, axis])
+    return first, (low + high) / 2
 
 
 @compiled(inline="always")

@@ -87,6 +87,7 @@ def assemble(
         connectivity=connectivity,
         interior=points,
         inverted=surface.inverted,
+        omitted=surface.omitted,
         winding_threshold=winding_threshold,
     )
 

@@ -15,7 +15,7 @@ from .cutcell_graph import CutCellGraph
 from .fingerprint import graph_fingerprint
 from .libraries import CASTERS, fast_winding_numbers
 from .memory import check_hits
-from .rays import cast_all_rays
+from .rays import cast_all_rays, part_at_contacts
 from .segments import PointwiseWindingNumbers, RayWindingNumbers, inside_intervals
 from .surface import prepare_surface
 from .winding.treecode.winding_numbers import TreecodeWindingNumbers
@@ -84,13 +84,15 @@ def build_graph(
             report_stage("graph", done)
 
         report(0.0)
-        surface = prepare_surface(mesh, resolution, method.orient, share_of(report, 0, 0.05))
+        fill = method.connectivity != 6  # the paper's graph leaves voids empty
+        surface = prepare_surface(mesh, resolution, method.orient, fill, share_of(report, 0, 0.05))
         check_hits(surface)
         shape = surface.vertices, surface.faces, resolution
         if rays == "raster":
             hits = cast_all_rays(*shape, share_of(report, 0.05, 0.2))
         else:
             hits = [CASTERS[rays](*shape, axis) for axis in range(3)]
+        hits = [part_at_contacts(along, surface.part) for along in hits]
         report(0.2)
         if winding == "exact":
             numbers: RayWindingNumbers = TreecodeWindingNumbers(
@@ -103,7 +105,7 @@ def build_graph(
         # number of at least tau are kept.
         inside = inside_intervals(hits, tau, numbers, resolution, share_of(report, 0.45, 0.9))
         graph = assemble(surface, hits, inside, method.connectivity, tau)
-        object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method))
+        object.__setattr__(graph, "fingerprint", graph_fingerprint(mesh, method, rays, winding))
         report(1.0)
         return graph
 

@@ -46,7 +46,7 @@ class CutCellGraph(Summarized):
         The node of each vertex of the mesh as given: its welded vertex.
     faces : array, shape (m, 3), int32
         The mesh's triangles between nodes, flipped to face outward where inverted. Triangles that
-        welding has collapsed are included.
+        welding has collapsed are included, and those left out, collapsed, too.
     lattice : Lattice
     is_closed : bool
         Whether the faces have no boundary.
@@ -56,6 +56,9 @@ class CutCellGraph(Summarized):
         The lattice points inside, in the order of their nodes.
     inverted : array, shape (m,), bool
         Which faces of the mesh are inside out, see `inverted_faces`.
+    omitted : array, shape (m,), uint8
+        Which faces of the mesh are left out: 1 the reverse side of another face; 2 the wall of a
+        void, whose vertices have the nodes of the skin over them. 0 for all others.
     winding_threshold : float
         tau: what has at least this winding number is inside.
 
@@ -78,6 +81,7 @@ class CutCellGraph(Summarized):
     connectivity: int | str
     interior: InteriorPoints
     inverted: NDArray[np.bool_]
+    omitted: NDArray[np.uint8]
     winding_threshold: float = 0.5
     fingerprint: Fingerprint = field(init=False, default_factory=dict)
 

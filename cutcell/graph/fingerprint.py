@@ -4,69 +4,87 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..method import Method
+from ..method import DistanceOptions, GraphOptions, Method
 from ..rig import Skeleton, TriangleMesh
 
 Fingerprint = Mapping[str, Any]
 """Hashes of arrays, as bytes, and values of options, by name."""
+APPROXIMATE: Fingerprint = {"approximate": True}
+"""Of distances while joints are moved: they equal no others."""
+AT_LEAST = ("nearest joints", "within")
+"""Entries of which more is as good: what is measured from more joints, or farther."""
 
 
-def mesh_fingerprint(mesh: TriangleMesh) -> dict[str, Any]:
-    """Return the fingerprint of a mesh."""
-    return {"vertices": _digest(mesh.vertices), "faces": _digest(mesh.faces)}
-
-
-def graph_fingerprint(mesh: TriangleMesh, method: Method) -> dict[str, Any]:
-    """Return the fingerprint of the graph of a mesh by a method."""
-    options = ("resolution", "connectivity", "winding_threshold", "orient")
-    return mesh_fingerprint(mesh) | {name: getattr(method, name) for name in options}
-
-
-def skeleton_fingerprint(skeleton: Skeleton) -> dict[str, Any]:
-    """Return the fingerprint of the bones of a skeleton."""
+def data_fingerprint(*data: TriangleMesh | Skeleton) -> dict[str, Any]:
+    """Return the fingerprint of all fields. Names count: they decide about bones."""
     return {
-        "joints": _digest(skeleton.joints),
-        "parents": _digest(skeleton.parents),
-        "deforming joints": _digest(skeleton.deform),
-        "joint orientations": _digest(skeleton.orientations),
+        f"{type(one).__name__} {field.name}": _digest(getattr(one, field.name))
+        for one in data
+        for field in fields(one)
     }
 
 
-def distance_fingerprint(
-    skeleton: Skeleton, method: Method, allowed: NDArray[np.bool_] | None
+def graph_fingerprint(
+    mesh: TriangleMesh, method: Method, rays: str = "raster", winding: str = "exact"
 ) -> dict[str, Any]:
-    """Return what distances depend on besides their graph."""
-    options = {"samples": method.samples, "leaf": method.leaf}
+    """Return the fingerprint of the graph of a mesh by a method."""
+    options = {
+        name: getattr(method, name) for name in ("resolution", *GraphOptions.__annotations__)
+    }
+    return data_fingerprint(mesh) | options | {"rays": rays, "winding": winding}
+
+
+def distance_fingerprint(
+    skeleton: Skeleton,
+    method: Method,
+    allowed: NDArray[np.bool_] | None,
+    nearest_joints: int | None = 1,
+    within: float = 1.0,
+    nearest: int = 3,
+) -> dict[str, Any]:
+    """Return what distances depend on besides their graph, see `bone_distances`."""
+    options = {name: getattr(method, name) for name in DistanceOptions.__annotations__}
     allowed = None if allowed is None or allowed.all() else allowed
-    return skeleton_fingerprint(skeleton) | options | {"permitted joints": _digest(allowed)}
+    measured = dict(zip(AT_LEAST, (nearest_joints or np.inf, within), strict=True))
+    own = options | measured | {"nearest": nearest, "permitted joints": _digest(allowed)}
+    return data_fingerprint(skeleton) | own
 
 
 def require_same(what: str, actual: Fingerprint, expected: Fingerprint) -> None:
     """Raise a `ParameterError` that names what differs from the expected entries."""
     if not actual:
         raise ParameterError(f"{what} changed after it was computed; leave it out")
-    differences = [
+    if actual == APPROXIMATE:
+        raise ParameterError(f"{what} are approximate, of joints that were moved; leave them out")
+    if different := differences(actual, expected):
+        raise ParameterError(
+            f"{what} does not fit: {'; '.join(different)}. Leave it out, and it is computed"
+        )
+
+
+def differences(actual: Fingerprint, expected: Fingerprint) -> list[str]:
+    """Name what differs from the expected entries."""
+    return [
         f"other {name}"
         if isinstance(value, bytes | None)
         else f"{name}={actual.get(name)!r}, expected {value!r}"
         for name, value in expected.items()
-        if actual.get(name) != value
+        if actual.get(name) != value and not (name in AT_LEAST and actual.get(name, 0) > value)
     ]
-    if differences:
-        raise ParameterError(
-            f"{what} does not fit: {'; '.join(differences)}. Leave it out, and it is computed"
-        )
 
 
-def _digest(array: NDArray[Any] | None) -> bytes | None:
-    """Hash an array; -0 counts as 0."""
+def _digest(array: Any) -> bytes | None:
+    """Hash an array, or names; -0 counts as 0."""
     if array is None:
         return None
+    if isinstance(array, tuple):
+        return hashlib.blake2b(repr(array).encode()).digest()
     data = np.ascontiguousarray(array + 0 if array.dtype.kind == "f" else array)
     return hashlib.blake2b(repr((data.dtype.str, data.shape)).encode() + data.tobytes()).digest()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
+from ..geometry.vectors import TIE
 from ..method import check_resolution
 from ..rig import TriangleMesh
 from ..rig.checks import LARGEST, check_positions
@@ -61,6 +62,16 @@ class Lattice:
         # very same numbers.
         extent = (high - low) / size
         return cls(resolution, low, size, (1 - extent) / 2, float(np.linalg.norm(extent)))
+
+    def order(self, *points: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Sort rows of points (n, 3) in the cube, by the mesh's longest side first."""
+        columns = np.concatenate([p[:, self.axes] for p in points], axis=1)
+        return np.lexsort(np.rint(columns.T[::-1] / TIE))
+
+    @property
+    def axes(self) -> NDArray[np.intp]:
+        """The axes by the mesh's size along them, the longest first."""
+        return np.argsort(np.rint(self.offset / TIE), kind="stable")
 
     def to_unit(self, points: ArrayLike) -> NDArray[np.float64]:
         """Bring points (..., 3) from the file's units into the unit cube."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import FileError, SkeletonError
+from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig
 from ..rig.inputs import as_rig
 from ..runtime.writing import check_place, write_all
@@ -18,6 +18,7 @@ from .gltf.read.read import GltfSource, read_gltf
 from .gltf.write.fresh import check_fits, new_files
 from .gltf.write.skinned import can_be_skinned, skinned
 from .gltf.write.write import rewritten
+from .inputs import Input, as_file
 from .materials.gltf_colored import color_notes
 from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
@@ -31,6 +32,8 @@ READABLE = (
     "GLB, glTF, VRM, FBX, USD, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, "
     "OFF"
 )
+EXPORTED = {kind: ("Maya", "FBX") for kind in (".ma", ".mb")} | {".max": ("3ds Max", "FBX")}
+"""Programs of formats that only they can read, and what they export."""
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
 SAVED = (*GLTF, ".txt", ".npz")
 """The endings that `save` takes."""
@@ -38,23 +41,20 @@ AVATAR = ("VRM", "VRMC_vrm")
 """Extensions of a document that make it a VRM."""
 
 
-def load(
-    path: str | os.PathLike[str],
-    skeleton: str | os.PathLike[str] | None = None,
-    accessories: bool = False,
-) -> Rig:
+def load(path: Input, skeleton: Input | None = None, accessories: bool = False) -> Rig:
     """Load a rig.
 
     Parameters
     ----------
-    path : path
+    path : path, bytes or open file
         A GLB, glTF, VRM, FBX or USD file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL
         ``.npz``; or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh
         without a skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken
-        from each.
-    skeleton : path, optional
+        from each. The format of bytes, of a file opened in binary mode and of a pipe is that of
+        their content.
+    skeleton : path, bytes or open file, optional
         A file with the skeleton of a mesh that has no skin: JSON, GLB, glTF, VRM, FBX, USD,
-        RigNet's ``.txt`` or Articulation-XL's ``.npz``.
+        RigNet's ``.txt`` or Articulation-XL's ``.npz``. Its clips come with it.
     accessories : bool
         Whether meshes of a glTF, FBX or USD file that have no skin, such as a sword on a joint,
         become part of the rig's mesh, to be bound with it.
@@ -72,9 +72,8 @@ def load(
         What the file holds cannot be used, or it has a skeleton besides the one that is given.
         Every message names the file.
     """
-    path = Path(path)
-    with naming(path):
-        rig = _load(path, skeleton is not None, accessories)
+    with as_file(path) as file, naming(file):
+        rig = _load(file, skeleton is not None, accessories)
         if skeleton is None:
             return rig
         if len(rig.skeleton.joints):
@@ -82,7 +81,8 @@ def load(
                 f"has a skeleton of its own, of {len(rig.skeleton.joints)} joints; a skeleton file "
                 "is for a mesh without one"
             )
-        return with_skeleton(rig, Path(skeleton))
+        with as_file(skeleton) as donor:
+            return with_skeleton(rig, donor)
 
 
 def _load(path: Path, bare: bool, accessories: bool) -> Rig:
@@ -101,7 +101,9 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
         return read_gltf(path, accessories, bare)
     if kind == ".json":
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
-    raise FileError(f'"{kind}" cannot be read; give {READABLE} (from Blender: export as GLB)')
+    program, exported = EXPORTED.get(kind, ("Blender", "GLB"))
+    hint = f"from {program}: export as {exported}"
+    raise FileError(f'"{kind}" cannot be read; give {READABLE} ({hint})')
 
 
 def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
@@ -217,6 +219,8 @@ def _check_gltf(kind: str, rig: Rig) -> None:
 
 
 def _gltf_files(rig: Rig, path: Path) -> dict[Path, bytes]:
+    if rig.weights is None:
+        raise WeightsError("the rig has no weights to save; bind it first")
     with malformed():  # parts of the document that loading had no reason to look at
         if isinstance(rig.source, GltfSource):
             return rewritten(rig, path)

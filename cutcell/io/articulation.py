@@ -50,7 +50,6 @@ def read_articulation(path: Path) -> Rig:
     if stored is not None and (stored.dtype != np.bool_ or stored.shape != (count,)):
         warnings.append(f"{KEY} is ignored; it is no array of true or false for each joint")
         stored = None
-    stored = None if stored is None else stored.astype(np.int8)
     return loaded_rig(mesh, skeleton, read, path.stem, stored, warnings)
 
 
@@ -103,13 +102,14 @@ def _parents(arrays: dict[str, NDArray], count: int) -> NDArray:
         parents[child] = parent
     if "root_index" in arrays:
         root = arrays["root_index"]
-        if root.size != 1 or root.dtype.kind not in "iu" or not 0 <= int(root.flat[0]) < count:
+        if (
+            root.size != 1
+            or root.dtype.kind not in "iu"
+            or not 0 <= (k := int(root.flat[0])) < count
+        ):
             raise SkeletonError(f"root_index must be one joint number, 0 to {count - 1}")
-        if parents[int(root.flat[0])] >= 0:
-            raise SkeletonError(
-                f"joint {int(root.flat[0])} is the root but hangs on "
-                f"joint {parents[int(root.flat[0])]}"
-            )
+        if parents[k] >= 0:
+            raise SkeletonError(f"joint {k} is the root but hangs on joint {parents[k]}")
     return parents
 
 

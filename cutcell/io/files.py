@@ -45,10 +45,11 @@ def _short(sentence: str) -> str:
     return f"{sentence[:half]} ... {sentence[-half:]}"
 
 
-def read_bytes(path: Path) -> bytes:
-    """Read a file that must exist, be a file, and hold something."""
+def read_bytes(path: Path, most: int | None = None) -> bytes:
+    """Read a file that must exist, be a file, and hold something, or its first `most` bytes."""
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read() if most is None else file.read(min(most, path.stat().st_size))
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None
     except IsADirectoryError:
@@ -77,21 +78,33 @@ def read_text(path: Path) -> str:
 def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LARGEST) -> bytes:
     """Return what is in the first of some files that is there, in the folder or below it.
 
-    A file may come from a stranger, and name files by their places on another machine.
+    A file may name others by their places on another machine.
     """
-    folder = path.parent.resolve()
     for name in _tried(names):
-        try:
-            file = folder.joinpath(name).resolve()
-            if not file.is_relative_to(folder) or not file.is_file():
-                continue
+        file = regular_file(path.parent / name, path.parent)
+        if file is not None:
             size = file.stat().st_size
-        except (OSError, ValueError, RuntimeError):  # too long a name; links in a circle
-            continue
-        if size > largest:
-            raise FileError(f"{label} has {size / 2**20:,.0f} MB, more than is read")
-        return read_bytes(file)
+            if size > largest:
+                raise FileError(f"{label} has {size / 2**20:,.0f} MB, more than is read")
+            return read_bytes(file, largest)
     raise FileError(f"{label} is not in the folder of {path.name}")
+
+
+def regular_file(file: Path, folder: Path) -> Path | None:
+    """Return a file without the links that lead to it, None where no file is.
+
+    Strangers send folders: a link out of it, a pipe and a device are refused, before they are open.
+    """
+    try:
+        real = file.resolve(strict=True)
+    except (OSError, ValueError, RuntimeError):  # too long a name; links in a circle
+        return None
+    if real.is_dir():
+        return None
+    if real.is_file() and real.is_relative_to(folder.resolve()):
+        return real
+    kind = "a file outside of its folder" if real.is_file() else "a pipe or a device"
+    raise FileError(f'"{file.name[:80]}" is {kind}, which is not read; put a copy there')
 
 
 def _tried(names: Iterable[str]) -> Iterator[PurePosixPath]:

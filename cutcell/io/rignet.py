@@ -47,11 +47,10 @@ def read_rignet(path: Path) -> Rig:
     obj = mesh_file(path)
     with naming(obj):
         contents = parse_obj(read_text(obj))
-        mesh = contents.mesh
     with naming(path):
         skeleton, skin = _parse(text)
-        read = _weights(skin, skeleton.names, len(mesh.vertices), f'mesh "{obj.stem}"')
-        return loaded_rig(mesh, skeleton, read, obj.stem, source=ObjSource(obj, contents))
+        read = _weights(skin, skeleton.names, len(contents.mesh.vertices), f'mesh "{obj.stem}"')
+        return loaded_rig(contents.mesh, skeleton, read, obj.stem, source=ObjSource(obj, contents))
 
 
 def read_rignet_skeleton(path: Path) -> Skeleton:
@@ -146,8 +145,7 @@ def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
     lines += [f"hier {names[p]} {n}" for n, p in zip(names, parents, strict=True) if p >= 0]
     if rig.weights is not None:
         for i, row in enumerate(rig.weights):
-            carrying = np.flatnonzero(row)
-            pairs = " ".join(f"{names[j]} {float(row[j])!r}" for j in carrying)
+            pairs = " ".join(f"{names[j]} {float(row[j])!r}" for j in np.flatnonzero(row))
             if pairs:
                 lines.append(f"skin {i} {pairs}")
     text = "\n".join(lines) + "\n"

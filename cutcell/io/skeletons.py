@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError, SkeletonError
-from ..rig import Rig, Skeleton
+from ..rig import Clip, Rig, Skeleton
 from .articulation import read_articulation
 from .files import naming
 from .gltf.container import Document, malformed
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
+from .gltf.read.added_skins import has_volume
 from .gltf.read.bones import find_bones
+from .gltf.read.clips import read_clips
 from .gltf.read.compressed import plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .meshes.mesh_files import read_skeleton_json
@@ -30,15 +33,18 @@ SIMILAR = 0.5
 """The scene's places are chosen unless those in the bind space fit better than by this factor."""
 MIN_FIT = 0.2
 """Below it the user is warned."""
+_Donor = tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None, Sequence[tuple[Clip, ...]]]
+"""Joints, the matrix to their scene, which deform if stored, and clips there and before it."""
 
 
 def with_skeleton(rig: Rig, path: Path) -> Rig:
-    """Return a mesh without joints with the skeleton of a file, in its scene or its mesh's space.
+    """Return a mesh without joints with the skeleton and clips of a file.
 
-    The one is taken in which more joints lie in the mesh: programs differ in units and axes.
+    They are placed as in its scene or in its mesh's space, whichever has more joints in the mesh:
+    programs differ in units and axes.
     """
     with naming(path):
-        skeleton, world, stored = _read(path)
+        skeleton, world, stored, clips = _read(path)
         if not len(skeleton.joints):
             raise SkeletonError(
                 "has no joints: neither a skin, nor nodes that are bones. Give a file with an "
@@ -46,16 +52,16 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
             )
     choices = _in_scene(skeleton, world), skeleton
     fits = [_fit(rig, choice) for choice in choices]
-    is_in_scene = fits[0] >= SIMILAR * fits[1]
-    skeleton = choices[0 if is_in_scene else 1]
-    warnings: list[str] = []
-    if fits[0 if is_in_scene else 1] < MIN_FIT:
+    chosen = 0 if fits[0] >= SIMILAR * fits[1] else 1
+    skeleton = choices[chosen]
+    warnings = list(rig.warnings)
+    if fits[chosen] < MIN_FIT:
         warnings.append(
             f"the joints of {path.name} do not fit the mesh: {_extent(skeleton.joints)} for "
             f"{_extent(rig.mesh.vertices)}. Give the two files the same scale, axes and origin"
         )
     skeleton, _, notes = with_deform(rig.mesh, skeleton, None, stored)
-    return replace(rig, skeleton=skeleton, warnings=(*rig.warnings, *warnings, *notes))
+    return replace(rig, skeleton=skeleton, clips=clips[chosen], warnings=(*warnings, *notes))
 
 
 def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
@@ -84,16 +90,16 @@ def _extent(points: NDArray[np.float64]) -> str:
     return " to ".join(f"({corner})" for corner in corners)
 
 
-def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
-    """Return a skeleton, the matrix to its scene, and which joints deform, if the file has that."""
-    kind, world = path.suffix.lower(), np.eye(4)
+def _read(path: Path) -> _Donor:
+    """Return what a file has of a skeleton."""
+    kind, world, still = path.suffix.lower(), np.eye(4), ((), ())
     if kind == ".json":
         skeleton, says_deform = read_skeleton_json(path)
-        return skeleton, world, skeleton.deform.astype(np.int8) if says_deform else None
+        return skeleton, world, skeleton.deform.astype(np.int8) if says_deform else None, still
     if kind == ".npz":
-        return read_articulation(path).skeleton, world, None
+        return read_articulation(path).skeleton, world, None, still
     if kind == ".txt":
-        return read_rignet_skeleton(path), world, None
+        return read_rignet_skeleton(path), world, None, still
     if kind in (".glb", ".gltf", ".vrm"):
         with malformed():
             return _of_document(plain_document(path))
@@ -106,7 +112,7 @@ def _read(path: Path) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] |
 
 def _of_document(
     document: Document, bones: list[int] | None = None, world: NDArray | None = None
-) -> tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None]:
+) -> _Donor:
     """Return what `_read` does, of the skins of a document, else of its bones."""
     nodes = Nodes(document)
     skins, bind = list(range(len(document.items("skins")))), Bind()
@@ -114,12 +120,16 @@ def _of_document(
         bind = read_bind(document, nodes, skins, world)
     else:
         joints = find_bones(document, nodes).joints if bones is None else bones
-        joints = [i for i in joints if np.linalg.matrix_rank(nodes.world[i, :3, :3]) == 3]
+        bind.nodes = [i for i in joints if has_volume(nodes.world[i])]
         if bones is not None:  # of a scene, whose root leads from the file's units and axes
             bind.world = nodes.world[0]
-        bind.nodes = joints
-        bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in joints]
+        bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in bind.nodes]
     if not bind.nodes:
-        return Skeleton([], []), bind.world, None  # type: ignore[arg-type]
+        return Skeleton([], []), bind.world, None, ((), ())  # type: ignore[arg-type]
     stored = read_deform(document, bind.skins, len(bind.nodes))
-    return read_skeleton(nodes, bind), bind.world, stored
+    inverse, back = np.array(bind.inverse), np.linalg.inv(bind.world)
+    clips = (
+        read_clips(document, nodes, bind.nodes, inverse @ back, np.eye(4)),
+        read_clips(document, nodes, bind.nodes, inverse, bind.world),
+    )
+    return read_skeleton(nodes, bind), bind.world, stored, clips

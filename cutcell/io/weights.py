@@ -67,9 +67,7 @@ def summed(
     return ReadWeights(normalised(weights), warnings, sums + weights.sum(axis=1))
 
 
-def sum_warnings(
-    sums: NDArray[np.float64] | None, faces: NDArray[np.integer], parts: Iterable[Part]
-) -> list[str]:
+def sum_warnings(sums: NDArray | None, faces: NDArray, parts: Iterable[Part]) -> list[str]:
     """Count the vertices of faces whose weights sum to zero, or not to one, by their meshes."""
     if sums is None:
         return []
@@ -78,12 +76,10 @@ def sum_warnings(
     empty = is_used & (sums == 0)
     off = is_used & (sums > 0) & (np.abs(sums - 1) > ROUNDING)
     warnings: list[str] = []
-    nothing = "no weight, so that no joint moves them. `cutcell bind` gives them some"
+    nothing = "no weight, so that no joint moves them. Binding gives them some"
     scaled = "weights that do not sum to one. They are scaled so that they do"
-    for rows, what, code in (
-        (empty, nothing, "unweighted-vertices"),
-        (off, scaled, "unnormalised-weights"),
-    ):
+    cases = (empty, nothing, "unweighted-vertices"), (off, scaled, "unnormalised-weights")
+    for rows, what, code in cases:
         counts = {part.name: int(rows[part.vertices].sum()) for part in parts}
         names = listed([f"{name}: {count:,}" for name, count in counts.items() if count])
         if rows.any():
@@ -101,10 +97,7 @@ FOLLOWED = 0.25
 
 
 def with_deform(
-    mesh: TriangleMesh,
-    skeleton: Skeleton,
-    weights: NDArray[np.float64] | None,
-    stored: NDArray[np.int8] | None = None,
+    mesh: TriangleMesh, skeleton: Skeleton, weights: NDArray | None, stored: NDArray | None = None
 ) -> tuple[Skeleton, NDArray[np.float64] | None, list[str]]:
     """Return the skeleton with the joints that deform, the weights, and warnings.
 
@@ -126,16 +119,13 @@ def with_deform(
     if stored is not None and neutral.any():
         stored = np.where(neutral, 0, stored)
     if stored is None or not (stored == 1).any():
-        deform, more = _inferred(mesh, skeleton, weights)
-        return replace(skeleton, deform=deform), weights, warnings + more
+        stored = np.full(len(neutral), -1)
     deform = stored == 1
     if (stored < 0).any():  # such as a skin that another program added
         inferred, more = _inferred(mesh, skeleton, weights)
         deform, warnings = np.where(stored < 0, inferred, deform), warnings + more
-    weighted = np.zeros(len(deform), bool)
-    if weights is not None:
-        weighted = (stored == 0) & (weights > 0).any(axis=0)
-    if weighted.any():
+    marked_off = stored == 0
+    if weights is not None and (weighted := marked_off & (weights > 0).any(axis=0)).any():
         warnings.append(
             f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
             "not deforming: new weights give them none"

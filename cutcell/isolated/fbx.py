@@ -1,7 +1,6 @@
 """FBX, binary and text, 6.1 to 7.7: read by ufbx, handed on as the arrays of a scene.
 
-ufbx' bindings let go of list elements too often: each list is walked once and kept (`kept`), and
-the process must end without cleaning up.
+The process must end without cleaning up, since ufbx' bindings let go of elements too often.
 """
 
 from __future__ import annotations
@@ -10,52 +9,54 @@ import numpy as np
 import ufbx
 
 from ..geometry.polygons import cut_polygons
+from .fbx_names import kept, label, read_names
 from .scene import Scene, upper_left
 
 FRAMES_A_SECOND = 30.0
+DUAL = ufbx.SkinningMethod.DUAL_QUATERNION, ufbx.SkinningMethod.BLENDED_DQ_LINEAR
 
 
 def read(data):
     """Read a file; shape data (b,)."""
     try:
         file = ufbx.load_memory(data.tobytes(), **options())
+        warnings = [one.type for one in kept(kept([file])[0].metadata.warnings)]
+        is_utf8 = ufbx.WarningType.BAD_UNICODE not in warnings
+        if not is_utf8:
+            file = ufbx.load_memory(data.tobytes(), **options(), retain_dom=True)
     except ufbx.UfbxError as error:
         raise RuntimeError(f"it is damaged ({error})") from None
     kept([file])
     scene, nodes = Scene(), kept(file.nodes)
+    named = [*nodes, *kept(file.meshes), *kept(file.anim_stacks), *kept(file.materials)]
+    notes = read_names([] if is_utf8 else named)
     place = {node.element_id: i for i, node in enumerate(nodes)}
     for node in nodes:
         parent = place[p.element_id] if (p := node.parent) else -1
         is_bone = node.attrib_type == ufbx.ElementType.BONE
-        scene.add_node(
-            node.name, parent, transform(node.local_transform), not node.visible, is_bone
-        )
-    blended: list[str] = []
-    notes: list[str] = []
+        local = transform(node.local_transform)
+        scene.add_node(label(node), parent, local, not node.visible, is_bone)
     for mesh in kept(file.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
             continue
         shape, corners, polygons = geometry(mesh)
         skins = kept(mesh.skin_deformers)
-        name = places[0].name or mesh.name
+        name = label(places[0]) or label(mesh)
         if skins and len(places) > 1:
-            others = ", ".join(node.name for node in places[1:][:6])
+            others = ", ".join(label(node) for node in places[1:][:6])
             notes.append(
                 f'the skinned mesh "{name}" is read once, as "{name}"; its other instances '
                 f"({others}) are left out. Duplicate the mesh data of those to read them"
             )
-        if len(kept(mesh.blend_deformers)):
-            blended.append(name)
         skin = influences(skins, place) if skins else {}
         # A skin holds for one place of a mesh; other meshes may stand anywhere.
         for node in places[:1] if skins else places:
             colours = surface(mesh, node, corners, polygons, scene)
             arrays = shape | colours | {"place": matrix(node.geometry_to_node)} | skin
-            scene.add_mesh(node.name or mesh.name, place[node.element_id], arrays)
+            scene.add_mesh(label(node) or label(mesh), place[node.element_id], arrays)
     add_clips(scene, file, place)
-    notices = {"blended": np.array(blended, np.str_), "notes": np.array(notes, np.str_)}
-    return scene.arrays() | notices
+    return scene.arrays() | {"notes": np.array(notes, np.str_)}
 
 
 def options():
@@ -67,7 +68,7 @@ def options():
         "space_conversion": ufbx.SpaceConversion.TRANSFORM_ROOT,
         "geometry_transform_handling": ufbx.GeometryTransformHandling.PRESERVE,
         "inherit_mode_handling": ufbx.InheritModeHandling.HELPER_NODES,
-        "index_error_handling": ufbx.IndexErrorHandling.ABORT_LOADING,
+        "index_error_handling": ufbx.IndexErrorHandling.NO_INDEX,  # -1 stands for no value
         "generate_missing_normals": True,
     }
 
@@ -88,12 +89,14 @@ def geometry(mesh):
     """Return a mesh's arrays, the corners of its triangles by its own numbers, and the polygons."""
     vertices = np.array(list(mesh.vertex_indices), int)
     points = np.array([tuple(point) for point in mesh.vertices], float).reshape(-1, 3)
+    if vertices.max(initial=-1) >= len(points):
+        raise RuntimeError(f'it is damaged (mesh "{label(mesh)}": a face uses a missing vertex)')
     counts = np.array([face.num_indices for face in mesh.faces], int)
     corners, polygons = cut_polygons(points, vertices, counts)
     arrays = {"vertices": points, "faces": vertices[corners], "dropped": dropped(mesh)}
     is_smoothed = len(mesh.face_smoothing) or len(mesh.edge_smoothing)
     if mesh.vertex_normal.exists and (not mesh.generated_normals or is_smoothed):
-        arrays["normals"] = at_corners(mesh.vertex_normal, corners).astype(np.float32)
+        arrays["normals"] = at_corners(mesh.vertex_normal, corners, (0, 0, 0)).astype(np.float32)
     return arrays, corners, polygons
 
 
@@ -101,6 +104,9 @@ def dropped(mesh):
     """Return what of a mesh is not read."""
     parts = {
         "morph targets": len(mesh.blend_deformers),
+        "dual-quaternion skinning": any(
+            skin.skinning_method in DUAL for skin in kept(mesh.skin_deformers)
+        ),
         "texture coordinates after the first set": len(mesh.uv_sets) > 1,
         "vertex colours after the first set": len(mesh.color_sets) > 1,
         "tangents": mesh.vertex_tangent.exists,
@@ -151,21 +157,13 @@ def add_clips(scene, file, place):
                 rows = np.array([(key.time, *key.value) for key in moved])
                 if len(rows) and node.element_id in place:
                     scene.add_track(place[node.element_id], path, rows[:, 0], rows[:, 1:])
-        scene.end_clip(stack.name)
+        scene.end_clip(label(stack))
 
 
 LONGEST = 1000
 """Characters of an image's name that are handed on."""
 UNSEEN = 0.02
 """Opacity treated as unset: many programs write 0 and mean 1."""
-KEEP: list[list] = []
-"""Elements of ufbx that must never be released: its bindings let go of them too often."""
-
-
-def kept(elements):
-    """Return a list's elements; they stay as long as the process."""
-    KEEP.append(list(elements))
-    return KEEP[-1]
 
 
 def describe(scene, material):
@@ -176,7 +174,7 @@ def describe(scene, material):
         names = (texture.relative_filename, texture.filename, texture.absolute_filename)
         image = scene.add_image(tuple(name[:LONGEST] for name in names), texture.content)
     color, cut = base_color(material), is_cut(material)
-    return material.name, color, opacity(material), image, cut, texture
+    return label(material), color, opacity(material), image, cut, texture
 
 
 def base_texture(material):
@@ -235,24 +233,24 @@ def surface(mesh, node, corners, polygons, scene):
     material = np.array([*numbers, -1])[np.where(has_material, which, -1)]
     arrays = {"materials": material}
     if mesh.vertex_color.exists:
-        colors = at_corners(mesh.vertex_color, corners)[..., :3]
+        colors = at_corners(mesh.vertex_color, corners, (1, 1, 1, 1))[..., :3]
         arrays["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
     if mesh.vertex_uv.exists:
         sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
-        places = upper_left(at_corners(mesh.vertex_uv, corners))
+        places = upper_left(at_corners(mesh.vertex_uv, corners, (0, 0)))
         for k in np.unique(material[material >= 0]).tolist():
             texture, rows = scene.reader(k), np.flatnonzero(material == k)
             if texture is not None:
-                uv = at_corners(sets.get(texture.uv_set) or mesh.vertex_uv, corners[rows])
+                uv = at_corners(sets.get(texture.uv_set) or mesh.vertex_uv, corners[rows], (0, 0))
                 places[rows] = in_image(uv, texture)
         arrays["places"] = places
     return arrays
 
 
-def at_corners(attribute, corners):
+def at_corners(attribute, corners, missing):
     """Return the values of an attribute at corners (m, 3), shape (m, 3, width)."""
-    values = np.array([tuple(value) for value in attribute.values], float)
-    return values[np.array(list(attribute.indices), int)[corners]]
+    values = np.array([*(tuple(value) for value in attribute.values), missing], float)
+    return values[np.minimum(np.array(list(attribute.indices), int)[corners], len(values) - 1)]
 
 
 def in_image(uv, texture):

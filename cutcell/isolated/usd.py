@@ -11,6 +11,7 @@ import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
 from ..geometry.polygons import cut_polygons
+from ..runtime.display import listed
 from .scene import Scene
 from .usd_surfaces import TIME, surface
 
@@ -34,13 +35,14 @@ def read_stage(file):
     """Read an opened file's meshes, skeletons and motion."""
     stage = Usd.Stage.Open(str(file))
     for layer in stage.GetUsedLayers():
-        real = Path(layer.realPath or file)
+        real = Path(layer.realPath or file).resolve()
         if real != file and file.parent not in real.parents:
             raise RuntimeError(f"it refers to a file outside of its folder ({real.name})")
     reader = Stage(stage, file)
     reader.add_skeletons()
     reader.add_meshes()
-    return reader.scene.arrays()
+    note = f"meshes for the purposes proxy and guide are left out ({listed(reader.left_out)})"
+    return reader.scene.arrays() | {"notes": np.array([note] if reader.left_out else [], np.str_)}
 
 
 def matrix(value):
@@ -66,10 +68,14 @@ class Stage:
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
             turn = [-np.sqrt(0.5), 0, 0, np.sqrt(0.5)]
         self.scene.add_node("", -1, [0, 0, 0, *turn, *[scale] * 3], False, False)
-        self.bound = {}
+        self.bound, self.stands, self.left_out = {}, None, []
         self.cache = UsdSkel.Cache()
         self.places = UsdGeom.XformCache(TIME)
         self.prims = list(stage.Traverse(EVERYTHING))
+        stage.SetEditTarget(stage.GetSessionLayer())
+        for prim in self.prims:  # files of 2019 lack the schema that USD now requires of bindings
+            if not prim.IsInstanceProxy() and any("skel:" in n for n in prim.GetPropertyNames()):
+                UsdSkel.BindingAPI.Apply(prim)
 
     def add_skeletons(self):
         """Make nodes of all joints, and remember which meshes follow them."""
@@ -93,7 +99,7 @@ class Stage:
     def add_joints(self, query):
         """Add a skeleton's joints; return the number of the first node."""
         skeleton = query.GetPrim()
-        stands = self.places.GetLocalToWorldTransform(skeleton)
+        stands = self.stands = self.places.GetLocalToWorldTransform(skeleton)
         first = self.scene.add_node(skeleton.GetName(), 0, parts(stands), False, False) + 1
         order, topology = query.GetJointOrder(), query.GetTopology()
         rest = query.GetSkeleton().GetRestTransformsAttr().Get()
@@ -130,6 +136,9 @@ class Stage:
             points = mesh.GetPointsAttr().Get(TIME) if prim.IsA(UsdGeom.Mesh) else None
             if not points:
                 continue
+            if mesh.ComputePurpose() in (UsdGeom.Tokens.proxy, UsdGeom.Tokens.guide):
+                self.left_out.append(prim.GetName())
+                continue
             hidden = mesh.ComputeVisibility(TIME) == UsdGeom.Tokens.invisible
             at = [0, 0, 0, 0, 0, 0, 1, 1, 1, 1]
             node = self.scene.add_node(prim.GetName(), 0, at, hidden, False)
@@ -144,6 +153,9 @@ class Stage:
                 stands = self.places.GetLocalToWorldTransform(query.GetPrim())
                 place = matrix(stands) @ matrix(target.GetGeomBindTransform())
                 arrays |= influences(target, query, first, len(points))
+            elif not self.bound and self.stands is not None:
+                bind = UsdSkel.BindingAPI(prim).GetGeomBindTransformAttr().Get()
+                place = place if bind is None else matrix(self.stands) @ matrix(bind)
             self.scene.add_mesh(prim.GetName(), node, arrays | {"place": place})
 
 

@@ -152,9 +152,11 @@ def texture_sets(primvars):
 
 def dropped(prim, primvars, sets):
     """Return what of a mesh is not read."""
-    targets = UsdSkel.BindingAPI(prim).GetBlendShapeTargetsRel()
+    skin = UsdSkel.BindingAPI(prim)
+    targets = skin.GetBlendShapeTargetsRel()
     parts = {
-        "blend shapes": bool(targets and targets.GetTargets()),
+        "morph targets": bool(targets and targets.GetTargets()),
+        "dual-quaternion skinning": skin.GetSkinningMethodAttr().Get() == "dualQuaternion",
         "texture coordinates after the first set": len(sets) > 1,
         "tangents": bool(primvars.FindPrimvarWithInheritance("tangents")),
     }

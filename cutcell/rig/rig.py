@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +98,8 @@ class Rig(Summarized):
         is the file's. See `edited_rig`.
     original : Skeleton, optional
         The skeleton before edits added, removed, renamed or reparented joints.
+    partners : mapping of str to str
+        Joints on the other side that a person set, by joint, "" for none; see `JointEdit`.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -123,6 +126,7 @@ class Rig(Summarized):
     weight_sums: NDArray[np.float64] | None = None
     origin: NDArray[np.int32] | None = None
     original: Skeleton | None = None
+    partners: Mapping[str, str] = field(default_factory=dict)
     source: Any = field(default=None, repr=False)
 
     if TYPE_CHECKING:
@@ -143,6 +147,7 @@ class Rig(Summarized):
             weight_sums: NDArray[np.float64] | None = None,
             origin: ArrayLike | None = None,
             original: Skeleton | None = None,
+            partners: Mapping[str, str] = ...,
             source: Any = None,
         ) -> None: ...
 
@@ -174,7 +179,7 @@ class Rig(Summarized):
             object.__setattr__(self, "origin", frozen(origin.astype(np.int32)))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
-        self._check_units()
+        check_units(self.skeleton, self.mesh.bounds)
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -227,23 +232,25 @@ class Rig(Summarized):
         clips = tuple(clip.moved(before.parents, by) for clip in self.clips)
         return replace(self, skeleton=skeleton, clips=clips)
 
-    def _check_units(self) -> None:
-        joints = self.skeleton.joints
-        unit = np.abs(self.mesh.bounds).max()  # squares of what is measured must not overflow
-        with np.errstate(over="ignore"):
-            low, high = self.mesh.bounds / unit
-            outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
-            distance = np.linalg.norm(outside, axis=1)
-        diagonal = np.linalg.norm(high - low)
-        far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & self.skeleton.deform)
-        if len(far):
-            worst = far[np.argmax(distance[far])]
-            position = ", ".join(f"{x:.4g}" for x in joints[worst])
-            raise SkeletonError(
-                f'joint "{self.skeleton.names[worst]}" at ({position}) lies '
-                f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
-                f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
-            )
+
+def check_units(skeleton: Skeleton, bounds: NDArray[np.float64]) -> None:
+    """Raise an error if a joint that may carry weight is far from a mesh with bounds (2, 3)."""
+    joints = skeleton.joints
+    unit = np.abs(bounds).max()  # squares of what is measured must not overflow
+    with np.errstate(over="ignore"):
+        low, high = bounds / unit
+        outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
+        distance = np.linalg.norm(outside, axis=1)
+    diagonal = np.linalg.norm(high - low)
+    far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & skeleton.deform)
+    if len(far):
+        worst = far[np.argmax(distance[far])]
+        position = ", ".join(f"{x:.4g}" for x in joints[worst])
+        raise SkeletonError(
+            f'joint "{skeleton.names[worst]}" at ({position}) lies '
+            f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
+            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
+        )
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

@@ -129,8 +129,10 @@ def _lock(name: str, stack: ExitStack) -> None:
 
 
 def is_complete() -> bool:
-    """Return whether all functions of a binding are in the cache."""
-    return any(os.path.exists(folder / COMPLETE) for folder in folders())
+    """Return whether all functions of a binding are in the cache, or none is to be compiled."""
+    return bool(vars(config)["DISABLE_JIT"]) or any(
+        os.path.exists(folder / COMPLETE) for folder in folders()
+    )
 
 
 @cache
@@ -189,9 +191,10 @@ def folders() -> tuple[Path, ...]:
     chosen: str = vars(config)["CACHE_DIR"]  # the value of NUMBA_CACHE_DIR
     bases = [os.path.abspath(chosen)] if chosen else []
     bases.append(str(PACKAGE / "__pycache__"))
-    users = platformdirs.user_cache_dir("cutcell", appauthor=False)
-    if os.path.isabs(users):  # it is not without a home folder
-        bases.append(users)
+    with suppress(RuntimeError):  # for a user without a home folder
+        users = platformdirs.user_cache_dir("cutcell", appauthor=False)
+        if os.path.isabs(users):  # older versions return a relative path then
+            bases.append(users)
     return tuple(Path(base, _set_name()) for base in bases)
 
 

@@ -82,5 +82,13 @@ def count(number: int, one: str, verb: str = "") -> str:
     return f"{number:,} {noun} {verb}".rstrip()
 
 
+def share(part: float, whole: float) -> str:
+    """Return a part of a whole in per cent: "12%", "0.3%", "under 0.1%"."""
+    ratio = part / whole if whole > 0 else 0.0
+    if 0 < ratio < 0.001:
+        return "under 0.1%"
+    return f"{ratio:.0%}" if ratio >= 0.1 else f"{ratio:.1%}"
+
+
 _MANY = {"vertex": "vertices"}
 _ONE = {"are": "is", "have": "has", "carry": "carries", "do": "does"}

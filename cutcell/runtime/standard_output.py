@@ -31,11 +31,11 @@ class OutputError(Exception):
 
 class _Output(io.TextIOWrapper):
     def write(self, text: str) -> int:
-        with _own_errors():
+        with output_errors():
             return super().write(text)
 
     def flush(self) -> None:
-        with _own_errors():
+        with output_errors():
             super().flush()
 
 
@@ -72,7 +72,8 @@ def _open() -> _Output:
 
 
 @contextmanager
-def _own_errors() -> Iterator[None]:
+def output_errors() -> Iterator[None]:
+    """Raise `OutputError` in this block where standard output cannot be written to."""
     try:
         yield
     except OSError as error:

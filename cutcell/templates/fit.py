@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
-from ..graph.fingerprint import mesh_fingerprint, require_same
+from ..graph.fingerprint import data_fingerprint, require_same
 from ..rig import Skeleton
 from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
@@ -84,7 +84,7 @@ def fit_skeleton(
     template = check_template(template)
     mesh = as_mesh(mesh)
     if graph is not None:
-        require_same("graph", graph.fingerprint, mesh_fingerprint(mesh))
+        require_same("graph", graph.fingerprint, data_fingerprint(mesh))
     if graph is None or not RESOLUTION <= graph.lattice.resolution <= 2 * RESOLUTION:
         graph = build_graph(mesh, RESOLUTION, progress=progress)
     nodes = graph.nodes[graph.connected]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..runtime.threads import in_threads, parts, threads
 
 A_PART = 100_000
@@ -23,7 +24,7 @@ def paper_kernel(
     weights = np.empty(distance.shape[::-1])
 
     def weigh(part: slice) -> None:
-        x = distance[:, part] / diagonal
+        x = np.maximum(distance[:, part], TIE) / diagonal
         is_far = np.isinf(x)
         x[is_far] = 0.0
         steepness = (1 - alpha) * x + alpha * x * x

@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import TIE
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts, threads
-
-EQUAL = 1 + 1e-9
-"""Weights that differ by less than this factor are equal. Two bones that meet in a joint weigh the
-same wherever that joint is the nearest point of both, and rounding must not choose."""
 
 A_PART = 2_000_000
 """Weights of one part of the work, which takes some hundredths of a second."""
@@ -26,6 +23,9 @@ def prune(
     scaled: bool = True,
 ) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex and make them sum to one again, if `scaled`.
+
+    Of equal weights those of the first joints by priority are kept: two bones that meet in a joint
+    weigh the same wherever that joint is the nearest point of both.
 
     Shapes: weights (n, j), priority (j,); returns (n, j).
     """
@@ -56,10 +56,10 @@ def _keep_largest(row, most, threshold, priority, scaled, joints, pruned):
             continue
         if count < most:
             count += 1
-        elif weight <= EQUAL * row[joints[count - 1]]:
+        elif weight <= row[joints[count - 1]] + TIE:
             continue
         rank = count - 1
-        while rank > 0 and EQUAL * row[joints[rank - 1]] < weight:
+        while rank > 0 and row[joints[rank - 1]] + TIE < weight:
             joints[rank] = joints[rank - 1]
             rank -= 1
         joints[rank] = joint

@@ -7,8 +7,9 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
+from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
+from ..geodesics.allowed import check_allowed
 from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
@@ -60,6 +61,8 @@ def skinning_weights(
     ------
     ParameterError
         A parameter is out of its range, or the distances are of too few joints.
+    WeightsError
+        `allowed` has the wrong shape, or leaves a vertex only joints without a distance.
 
     References
     ----------
@@ -76,6 +79,9 @@ def skinning_weights(
         )
 
     graph = distances.graph
+    if allowed is not None:
+        deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
+        allowed = check_allowed(graph, deform, allowed)
     context = Context(method, allowed, progress, graph, distances, adjustments, surface)
     return run(weight_steps(method, allowed), context).weights
 
@@ -110,7 +116,10 @@ def permit(context: Context) -> NDArray[np.float64]:
     assert context.allowed is not None
     permitted = np.where(context.allowed, context.weights, 0.0)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    permitted[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
+    distance = np.where(context.allowed[lost].T, context.distances.joint[:, lost], np.inf)
+    if np.isinf(distance.min(axis=0)).any():
+        raise WeightsError("no joint that a vertex may follow was measured; measure by `allowed`")
+    permitted[lost, distance.argmin(axis=0)] = 1
     return permitted / permitted.sum(axis=1, keepdims=True)
 
 
@@ -180,4 +189,4 @@ def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not depend on their numbers."""
     positions = np.full((len(distances.at_welded), 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
-    return np.lexsort(positions.T[::-1])
+    return distances.graph.lattice.order(positions)

@@ -90,4 +90,5 @@ def block_graph(connectivity: int | str = "any") -> CutCellGraph:
         connectivity=connectivity,
         interior=stretches,
         inverted=np.zeros(len(mesh.faces), bool),
+        omitted=np.zeros(len(mesh.faces), np.uint8),
     )

@@ -15,11 +15,12 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from cutcell.errors import ParameterError
-from cutcell.geodesics import BoneDistances, Bones, trace_path
-from cutcell.geodesics.distances import distances_from
+from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_path
+from cutcell.geodesics.bones import per_joint
+from cutcell.geodesics.fallback import why_not_reached
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
-from cutcell.graph import build_graph
+from cutcell.graph import CutCellGraph, build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
@@ -271,3 +272,12 @@ def _seen_sides(
         count[at] += 1
     at = tuple(np.moveaxis(corners, 2, 0))
     return (corners - PAD) / voxels.resolution, total[at] / count[at]
+
+
+def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
+    """Compute the distances of given bones to each vertex along a graph, without a fallback."""
+    solver = BoneDistanceSolver(graph)
+    sources = solver.sources(bones, samples)
+    joint = per_joint(solver.paths(bones, sources), bones, joints)
+    why = why_not_reached(solver, bones, sources, joint, solver.targets, None)
+    return BoneDistances(joint, None, None, bones, sources, why[graph.vertex_node], solver)

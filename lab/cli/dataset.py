@@ -19,7 +19,7 @@ from rich.progress import (
 )
 
 from cutcell.cli.console import for_people, print_json, print_table, print_warnings
-from cutcell.cli.options import FILES, METHOD, Json, MethodChoice, Quiet, Resolution, chosen_method
+from cutcell.cli.options import FILES, METHOD, Json, Quiet, Resolution, chosen_method
 from cutcell.runtime.display import printable
 
 WORK = "Workers"
@@ -106,7 +106,15 @@ def split(
 @for_people
 def bind(
     paths: Annotated[list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, then the store.")],
-    method: MethodChoice = "paper",
+    method: Annotated[
+        str,
+        typer.Option(
+            "--method",
+            metavar="M",
+            help="animation: weights for animation. paper: as in the paper.",
+            rich_help_panel=METHOD,
+        ),
+    ] = "paper",
     resolution: Resolution = 64,
     precision: Annotated[
         str, typer.Option("--precision", help="float32 or float16.", rich_help_panel=FILES)
@@ -169,11 +177,16 @@ def bind(
                 "bound": report.bound,
                 "known": report.known,
                 "failed": report.failures,
+                "damaged": report.damaged,
                 "stretched": report.stretched,
                 "seconds": round(report.seconds, 3),
             }
         )
     elif not quiet:
+        print_warnings(
+            f"{name}: its file in the store was damaged, and it was bound again"
+            for name in report.damaged
+        )
         print_failures(report.failures)
         print_stretched(report.stretched)
         print_table(str(out), bind_counts(report).items())

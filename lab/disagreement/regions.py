@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from cutcell.geodesics import BoneDistances
 from cutcell.geometry.triangles import face_edges
 from cutcell.graph import CutCellGraph
-from cutcell.graph.fingerprint import mesh_fingerprint, require_same, skeleton_fingerprint
+from cutcell.graph.fingerprint import data_fingerprint, require_same
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_number
 from cutcell.rig.mesh import vertex_shares
@@ -144,7 +144,7 @@ def disagreement(
         A parameter is out of its range, or the distances are of another rig.
     """
     noticed = check_number("noticed", noticed, 0, 1e6)
-    expected = mesh_fingerprint(rig.mesh) | skeleton_fingerprint(rig.skeleton)
+    expected = data_fingerprint(rig.mesh, rig.skeleton)
     require_same("distances", distances.fingerprint, expected)
     pair = checked_pair(first, second)
     errors = deformation_error(rig, *pair, degrees, progress=progress)

@@ -15,7 +15,7 @@ import platformdirs
 from numpy.typing import NDArray
 
 from cutcell.editing import bind
-from cutcell.errors import CutcellError, WeightsError
+from cutcell.errors import CutcellError, ParameterError, WeightsError
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
@@ -73,8 +73,18 @@ def code_digest() -> str:
 
 
 def cache_folder() -> Path:
-    """Return where prepared samples are kept if no other folder is named."""
-    return platformdirs.user_cache_path("cutcell", appauthor=False) / "networks"
+    """Return where prepared samples are kept if no other folder is named.
+
+    Raises
+    ------
+    ParameterError
+        The user has no home folder.
+    """
+    try:
+        return platformdirs.user_cache_path("cutcell", appauthor=False) / "networks"
+    except RuntimeError:
+        message = "the user has no home folder to keep samples in; name a folder (--cache)"
+        raise ParameterError(message) from None
 
 
 class Samples:

@@ -17,7 +17,7 @@ from cutcell.editing.bind import bind_steps
 from cutcell.editing.bind import finished as finish
 from cutcell.errors import Cancelled, CutcellError
 from cutcell.geodesics.fallback import REACHED
-from cutcell.graph.fingerprint import distance_fingerprint, graph_fingerprint
+from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
 from cutcell.method import ANIMATION, Method, MethodName, method_of
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
@@ -245,9 +245,9 @@ def bind_setting(
 def _measures_enough(rig: Rig, method: Method, earlier: Binding) -> bool:
     """Return whether a binding has the distances that a method needs."""
     expected = distance_fingerprint(rig.skeleton, method, rig.allowed)
-    actual, before = earlier.distances.fingerprint, earlier.method
+    before = earlier.method
     return (
-        all(actual.get(name) == value for name, value in expected.items())
+        not differences(earlier.distances.fingerprint, expected)
         and before.joints_needed == method.joints_needed
         and before.reach_needed == method.reach_needed
     )

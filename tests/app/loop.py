@@ -12,8 +12,11 @@ import cutcell
 from cutcell.rig import Rig
 from cutcell_app.document.session import Session
 
+NEVER = 900.0
+"""Seconds after which something counts as failed, also on a machine with much else to do."""
 
-def wait_until(condition: Callable[[], bool], seconds: float = 120.0) -> None:
+
+def wait_until(condition: Callable[[], bool], seconds: float = NEVER) -> None:
     """Wait for something that happens in other threads or processes; fail if it never does."""
     end = time.monotonic() + seconds
     while not condition():
@@ -30,7 +33,7 @@ class Loop:
     def __call__(self, action: Callable[[], None]) -> None:
         self._actions.put(action)
 
-    def run_until(self, condition: Callable[[], bool], seconds: float = 120.0) -> None:
+    def run_until(self, condition: Callable[[], bool], seconds: float = NEVER) -> None:
         """Run actions until something holds; fail if it never does."""
         end = time.monotonic() + seconds
         while not condition():

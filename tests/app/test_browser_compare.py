@@ -47,7 +47,7 @@ def methods_stand_side_by_side_with_their_measures(visit):
     assert deformation > 0
     assert seconds >= 0
     visit.settle()
-    assert captions(visit) == ["cutcell (current settings)", "From file", "Euclidean"]
+    assert captions(visit) == ["Current weights", "From file", "Euclidean"]
     three = visit.look()
     box(visit, "Voxel binding, UniRig's").check()
     measured(visit, "UniRig")
@@ -58,7 +58,7 @@ def methods_stand_side_by_side_with_their_measures(visit):
     box(visit, "Voxel binding, UniRig's").uncheck()
     box(visit, "Euclidean").uncheck()
     visit.settle()
-    assert captions(visit) == ["cutcell (current settings)", "From file"]
+    assert captions(visit) == ["Current weights", "From file"]
     expect(box(visit, "From file")).to_be_disabled()
 
 
@@ -82,7 +82,7 @@ def differences_errors_and_poses_are_seen(visit):
     visit.expect_text("difference")
     difference = visit.look()
     assert changed(plain, difference) > 0.005
-    assert captions(visit)[0] == "cutcell (current settings) − From file"
+    assert captions(visit)[0] == "Current weights − From file"
     visit.button("Error").click()
     visit.expect_text("Largest error for 30° turns")
     assert changed(difference, visit.look()) > 0.005
@@ -121,7 +121,7 @@ def a_bone_is_picked_in_any_view(visit):
 
 
 def the_largest_disagreement_is_mended(visit):
-    before = measured(visit, "current settings")[1]
+    before = measured(visit, "Current weights")[1]
     rest = visit.points("body")
     region = visit.page.get_by_text("of the error", exact=False).first
     visit.reach(region)
@@ -132,7 +132,7 @@ def the_largest_disagreement_is_mended(visit):
     visit.page.get_by_role("button", name="Take this").press("Enter")
     visit.settle()
     expect(visit.page.get_by_role("button", name="Take this")).to_have_count(0)
-    assert measured(visit, "current settings")[1] < before
+    assert measured(visit, "Current weights")[1] < before
 
 
 def settings_are_swept_and_a_point_is_chosen(visit):

@@ -67,7 +67,7 @@ def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
     page.keyboard.press("Enter")  # paints at the cross
     visit.button("Lift").press("Enter")
     answered(visit)
-    expect(card(visit)).to_contain_text(re.compile(r"agree to \d+%"))
+    expect(card(visit)).to_contain_text(re.compile(r"agrees to \d+%"))
     expect(card(visit)).to_contain_text(LESSON[0].sentence)
     page.wait_for_function("__cutcell.renderer.views.length === 2")
     canvas = page.get_by_role("application").element_handle()
@@ -138,6 +138,7 @@ def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
     expect(card(visit)).to_have_class(re.compile("staged"))
     assert 24 <= letters(caption) <= 32
     assert letters(page.locator(".legend")) >= 16
+    expect(page.get_by_role("toolbar")).to_be_hidden()
     box = page.locator(".viewport").bounding_box()
     assert (box["x"], box["y"], box["width"]) == (0, 0, 1280)
     page.keyboard.press("Tab")
@@ -174,7 +175,7 @@ def test_a_link_shows_the_same_comparison(visit):
     visit.expect_text("difference")
     visit.page.wait_for_function("location.search.includes('minus=euclidean')")
     link, captions = visit.address, visit.page.locator(".caption")
-    expected = ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
+    expected = ["Current weights − Euclidean", "Euclidean − itself"]
     expect(captions).to_have_text(expected)
     visit.go(visit.first[0])
     expect(captions).to_have_count(0)

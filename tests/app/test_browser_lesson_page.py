@@ -139,7 +139,7 @@ def test_a_lesson_is_walked_without_a_server(browser, url, path):
     alone.settle()
     assert changed(plain, alone.look()) > 5e-3, "more than the ring of the brush"
     card.get_by_role("button", name="Lift").click()
-    expect(card).to_contain_text("agree to")
+    expect(card).to_contain_text("agrees to")
     alone.page.emulate_media(media="print")
     rows = alone.page.locator(".handout li")
     expect(rows).to_have_count(5)

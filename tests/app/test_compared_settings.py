@@ -81,10 +81,10 @@ def test_two_resolutions_stand_side_by_side_with_their_difference(page, loop):
     assert one.l1 == weight_l1(expected.weights, state.rig.weights, vertex_shares(state.rig.mesh))
     row = next(row for row in rows_of(state) if row["id"] == name)
     assert (row["title"], row["chosen"]) == ("R = 10", True)
-    assert resolve(state).views == ("cutcell (current settings)", "R = 10")
+    assert resolve(state).views == ("Current weights", "R = 10")
     state.minus = NOW
     scene = resolve(state)
-    assert scene.views[1] == "R = 10 − cutcell (current settings)"
+    assert scene.views[1] == "R = 10 − Current weights"
     difference = expected.weights[:, 1] - state.binding.weights[:, 1]
     body = scene.actors["body 1"]
     np.testing.assert_allclose(body.scalars, difference, atol=1e-6)

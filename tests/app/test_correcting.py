@@ -27,6 +27,7 @@ from cutcell.runtime.display import count
 from cutcell_app.document import arrival, loading, look
 from cutcell_app.document.address import from_query
 from cutcell_app.document.loading import restore
+from cutcell_app.document.recording import query
 from cutcell_app.features.correct import commands as correct
 from cutcell_app.features.correct import moving
 from cutcell_app.features.correct.choices import MAX_IN_ADDRESS, from_text, to_text
@@ -39,7 +40,7 @@ from cutcell_app.features.learn import steps as lesson
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.weights.facts import vertex_facts
 from cutcell_app.shell import keys
-from cutcell_app.shell.export_controls import EXPORT, changes_of
+from cutcell_app.shell.export_controls import BASE, changes_of, loss
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree
@@ -171,14 +172,14 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
 
 def test_all_parts_start_from_the_files_weights(bound, loop):
     computed = bound.state.binding.weights
-    assert "recomputed" in changes_of(bound.state)
+    assert "Computed" in changes_of(bound.state)
     assert not correct.uses_file(bound)
     correct.choose_file(bound, True)
     settled(bound, loop)
     assert correct.uses_file(bound)
     np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
     check_bound_as_by_core(bound, arm_rig())
-    assert "recomputed" not in changes_of(bound.state)
+    assert "Computed" not in changes_of(bound.state)
     correct.choose_file(bound, False)
     settled(bound, loop)
     np.testing.assert_allclose(bound.state.binding.weights, computed)
@@ -188,7 +189,7 @@ def test_all_parts_start_from_the_files_weights(bound, loop):
 
 
 def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
-    (whose,) = draw(bound, EXPORT).select(pmui.RadioButtonGroup)
+    (whose,) = draw(bound, BASE).select(pmui.RadioButtonGroup)
     assert (whose.value, whose.visible, whose.disabled) == (False, True, False)
     whose.value = True
     settled(bound, loop)
@@ -196,13 +197,55 @@ def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
     correct.overrule(bound, 3, {2: 1.0})
     settled(bound, loop)
     together = len(painted_vertices(bound.state.edits))
-    assert changes_of(bound.state) == f"{count(together, 'vertex')} painted."
+    painted = f"{count(together, 'vertex', 'differ')} from the file: Painted {together}."
+    assert changes_of(bound.state) == painted
     assert whose.value is True
     correct.clear(bound)
     settled(bound, loop)
     assert whose.value is False
     loading.show_rig(bound, arm_rig().with_weights(None))
     assert not whose.visible
+
+
+def opened_file(session, loop, tmp_path):
+    """Open a file of a person's own, which has weights."""
+    path = tmp_path / "own.glb"
+    cutcell.save(path, arm_rig())
+    session.state.param.update(resolution=16, graph_resolution=0)
+    loading.load_files(session, [path])
+    loop.run_until(lambda: session.state.binding is not None)
+    return session.state
+
+
+def test_a_persons_file_opens_with_its_own_weights(session, loop, tmp_path):
+    state = opened_file(session, loop, tmp_path)
+    np.testing.assert_array_equal(state.binding.weights, state.rig.weights)
+    assert "unchanged" in changes_of(state)
+    assert "edits=" not in query(session)
+    correct.choose_file(session, False)
+    settled(session, loop)
+    address = query(session)
+    arrival.arrive(session, f"?{address}", lambda: loading.load_files(session, session.paths))
+    loop.rest(session)
+    assert (state.edits.base, query(session)) == ("computed", address)
+    correct.clear(session)
+    assert state.edits.base == "file"
+    correct.choose_file(session, False)
+    keys.reset(session)
+    assert state.edits.base == "file"
+
+
+def test_an_export_says_that_it_replaces_more_than_was_edited(session, loop, tmp_path):
+    state = opened_file(session, loop, tmp_path)
+    layers.put_rows(session, np.array([3]), np.array([[0.0, 0.0, 1.0]]), "Fill wrist")
+    settled(session, loop)
+    assert not loss(state)
+    assert "Fill wrist" in changes_of(state)
+    correct.choose_file(session, False)
+    settled(session, loop)
+    differs = np.abs(state.binding.weights - state.rig.weights).max(axis=1) > 1e-9
+    differs[3] = False
+    assert f" {differs.sum()} vertices" in loss(state)
 
 
 def test_single_vertices_get_the_files_weights(bound, loop):

@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell import Edits, Filled, Layer, Locked, Mask
+from cutcell import Edits, Filled, JointEdit, Layer, Locked, Mask
 from cutcell.diagnosis import Diagnosis, Finding
 from cutcell.diagnosis.repair import WEIGHTS
 from cutcell.errors import LocatedWarning
@@ -19,7 +19,7 @@ from cutcell_app.features.character import bounds_of
 from cutcell_app.features.check.choices import EXPORT
 from cutcell_app.features.check.controls import CONTROLS, summary
 from cutcell_app.features.check.results import go_to, look_at, repair, take_back
-from cutcell_app.features.correct.commands import choose_file, uses_file
+from cutcell_app.features.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.weights.recovery import is_current
 from cutcell_app.shell.character import faults
@@ -27,8 +27,11 @@ from cutcell_app.shell.export import export_bound
 from cutcell_app.shell.export_controls import changes_of
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
+from cutcell_app.widgets.rows import Rows
 from cutcell_viewers.camera import sees
 from cutcell_viewers.finding_scene import finding_marks
+from cutcell_viewers.weights_scene import weight_colors
+from tests.app.loop import settled
 from tests.app.test_bare import bare_arm
 from tests.viewers.arm import arm_rig
 
@@ -161,10 +164,10 @@ def test_what_was_repaired_is_exported(spoiled, loop, tmp_path):
     changed = np.abs(again.weights - state.repair.before.weights).max(axis=1) > 1e-6
     assert np.flatnonzero(changed).tolist() == [0, 1, 2]
     assert uses_file(spoiled)
-    assert changes_of(state) == "3 vertices repaired."
+    assert changes_of(state) == "3 vertices differ from the file: Repaired 3."
     choose_file(spoiled, False)
     loop.run_until(lambda: is_current(spoiled))
-    assert "recomputed" in changes_of(state)
+    assert "Computed" in changes_of(state)
 
 
 def test_another_character_begins_anew(spoiled, loop):
@@ -259,11 +262,64 @@ def test_the_files_weights_are_not_offered_where_they_are(bound, loop):
     assert "Take from file here" not in labels(bound)
 
 
-def test_a_part_that_follows_a_far_joint_can_be_made_rigid(bound, loop):
+def far_part(bound, loop):
+    """Let a finding name the whole arm as a part; return the list of what it may follow."""
     state = bound.state
     loop.run_until(lambda: state.diagnosis is not None)
-    finding = Finding("far-parts", "warning", "", "", vertices=np.arange(5), parts=((0, 2),))
-    state.param.update(diagnosis=Diagnosis(state.rig, (finding,)), finding=finding.code)
-    labels(bound)["Rigid to wrist"].clicks += 1
-    (layer,) = state.edits.layers
+    finding = Finding("far-parts", "warning", "A part is far.", "", vertices=np.arange(5),
+                      details=("Part 2 (5 vertices) follows shoulder; wrist is nearest",),
+                      parts=((0, 2),), empty=(1,))  # fmt: skip
+    state.param.update(
+        panel="check", diagnosis=Diagnosis(state.rig, (finding,)), finding=finding.code
+    )
+    (rows,) = draw(bound, CONTROLS).select(Rows)
+    return rows
+
+
+def test_a_part_may_follow_what_it_touches_or_an_empty_or_the_nearest_joint(bound, loop):
+    rows = far_part(bound, loop)
+    assert [name for name, *_ in rows.rows] == [
+        "Part 2: with the body it touches", "Part 2: rigid to elbow, empty so far",
+        "Part 2: rigid to wrist", "Part 2: keep as in the file",
+    ]  # fmt: skip
+    rows.click(2)
+    (layer,) = bound.state.edits.layers
     assert layer == Layer(Filled({"wrist": 1.0}), Mask(part=0))
+    (rows,) = draw(bound, CONTROLS).select(Rows)
+    assert rows.chosen == 2
+
+
+def test_what_a_part_would_follow_is_seen_under_the_pointer(bound, loop):
+    rows, state = far_part(bound, loop), bound.state
+    before = resolve(state)
+    rows._handle_msg({"type": "point", "row": 2})
+    assert not state.edits.layers
+    colors = resolve(state).actors["body"].colors
+    wrist = weight_colors(state.rig, np.tile([0.0, 0.0, 1.0], (len(colors), 1)))[0]["colors"]
+    np.testing.assert_array_equal(colors, wrist)
+    rows._handle_msg({"type": "point", "row": -1})
+    assert resolve(state).actors.keys() == before.actors.keys()
+    rows._handle_msg({"type": "point", "row": 0})
+    rows.click(2)
+    assert state.tried is None
+
+
+def test_a_kept_part_is_a_warning_no_more_wherever_the_edits_go(bound, loop):
+    rows, state = far_part(bound, loop), bound.state
+    assert faults(state)
+    rows.click(3)
+    assert not faults(state)
+    assert not state.open_findings
+    assert "Done" in texts(bound)
+    state.edits = Edits.from_json(state.edits.to_json())
+    assert not state.open_findings
+    state.edits = Edits()
+    assert faults(state)
+
+
+def test_a_joint_that_a_part_is_made_rigid_to_carries_weight_then(bound, loop):
+    state = bound.state
+    correct(bound, Edits(joints={"elbow": JointEdit(deform=False)}))
+    settled(bound, loop)
+    far_part(bound, loop).click(1)
+    assert state.rig.skeleton.deform.all()

@@ -43,9 +43,19 @@ def test_weights_and_distances_are_those_of_the_vertex(rig, binding):
     size = np.ptp(rig.mesh.bounds, axis=0).max()
     assert size != pytest.approx(1)
     np.testing.assert_allclose(distances, np.sort(binding.distances.joint[:, 7]) * size)
+    assert result["unit"] == "units"
     assert result["distances"][0]["name"] in rig.skeleton.names
     assert result["reached"]
     assert result["component"] == {"number": 1, "of": 1, "vertices": len(rig.mesh.vertices)}
+
+
+def test_the_card_lists_the_distance_of_the_chosen_bone(monkeypatch, rig, binding):
+    monkeypatch.setattr("cutcell_app.features.weights.facts.MAX_DISTANCES", 1)
+    for joint in range(3):
+        state = State(rig=rig, binding=binding, vertex=7, joint=joint)
+        listed = [one["joint"] for one in vertex_facts(state, Memo())["distances"]]
+        assert joint in listed
+        assert len(listed) <= 2
 
 
 def test_a_file_without_weights_has_none_to_compare(rig, binding):

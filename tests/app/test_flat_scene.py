@@ -1,6 +1,7 @@
 """The flat scene, sliders in sentences and small plots, without a browser."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from cutcell_app.features.flat.choices import MODES
 from cutcell_app.features.learn.plots import plot_of
 from cutcell_app.features.learn.sliders import SLIDERS, slide, sliders_of
 from cutcell_lab.baselines.measured_distance import ErrorPoint
+from cutcell_viewers.distance_scene import longest_side
 
 
 def shown(session, loop):
@@ -79,25 +81,32 @@ def test_each_stop_can_be_chosen_and_nothing_else(session, name):
 
 
 def test_the_weights_of_a_vertex_lie_on_the_paper_s_curve(bound, loop):
-    bound.state.param.update(falloff="paper", alpha=0.3, joint=1, max_influences=2)
+    bound.state.param.update(falloff="paper", alpha=0.3, joint=1, max_influences=3, threshold=0)
     loop.rest(bound)
     assert plot_of(bound.state, "falloff") is None
     pick_vertex(bound, 7)
     plot = json.loads(json.dumps(plot_of(bound.state, "falloff")))
-    x = np.array(plot["distances"]) / plot["diagonal"]
-    curve = (0.7 * x + 0.3 * x**2) ** -2.0
-    assert plot["on_curve"]
-    weights = [mark["weight"] for mark in plot["marks"]]
-    assert len(weights) == 2
-    assert np.allclose(weights, curve / curve.sum())
-    assert [mark["chosen"] for mark in plot["marks"]].count(True) <= 1
+    (d, one), *_ = plot["curve"]["points"]
+    assert one == 1
+    diagonal = bound.state.binding.graph.lattice.diagonal * longest_side(bound.state.rig)
+
+    def kernel(distance):
+        x = distance / diagonal
+        return (0.7 * x + 0.3 * x**2) ** -2.0
+
+    for distance, weight in [plot["twice"], *(mark["at"] for mark in plot["marks"])]:
+        assert weight == pytest.approx(kernel(distance) / kernel(d))
+    assert plot["twice"][0] == 2 * d
+    assert len(plot["marks"]) == 3
+    assert [mark["chosen"] for mark in plot["marks"]].count(True) == 1
 
 
-def test_another_falloff_has_weights_off_the_curve(bound):
+def test_a_vertex_that_nothing_moves_has_no_plot(bound):
     pick_vertex(bound, 7)
-    plot = plot_of(bound.state, "falloff")
-    assert not plot["on_curve"]
-    assert sum(mark["weight"] for mark in plot["marks"]) == pytest.approx(1)
+    binding = bound.state.binding
+    weights = binding.weights * (np.arange(len(binding.weights)) != 7)[:, None]
+    bound.state.binding = replace(binding, weights=weights)
+    assert plot_of(bound.state, "falloff") is None
 
 
 def test_errors_are_a_curve_for_each_connectivity(bound):

@@ -2,7 +2,6 @@
 
 import http.client
 import re
-import socket
 import time
 from urllib.parse import quote
 
@@ -29,7 +28,7 @@ def here():
 @pytest.fixture
 def begun(here, monkeypatch):
     """Collect the sessions that begin, in order."""
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     seen = []
     begin = Session.__init__
 
@@ -39,33 +38,6 @@ def begun(here, monkeypatch):
 
     monkeypatch.setattr(Session, "__init__", noted)
     return seen
-
-
-def get(here, path="/", method="GET", **headers):
-    """Ask for a page; return the answer, its text in `text`."""
-    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=120)
-    try:
-        given = {name.replace("_", "-"): value for name, value in headers.items()}
-        connection.request(method, path, headers={"Host": here.host, **given})
-        answer = connection.getresponse()
-        answer.text = answer.read().decode()
-        return answer
-    finally:
-        connection.close()
-
-
-def upgrade(here, origin=None, token=None, host=None):
-    """Ask for a websocket as no browser could; return the status of the answer."""
-    token = token or generate_jwt_token(generate_session_id())
-    lines = [
-        "GET /ws HTTP/1.1", f"Host: {host or here.host}", "Connection: Upgrade",
-        "Upgrade: websocket", "Sec-WebSocket-Version: 13",
-        "Sec-WebSocket-Key: x3JJHMbDL1EzLkh9GBhXDw==", f"Sec-WebSocket-Protocol: bokeh, {token}",
-        *([] if origin is None else [f"Origin: {origin}"]), "", "",
-    ]  # fmt: skip
-    with socket.create_connection(("127.0.0.1", here.port), 120) as raw:
-        raw.sendall("\r\n".join(lines).encode())
-        return int(raw.recv(100).split()[1])
 
 
 def listening(port):
@@ -87,71 +59,95 @@ def test_it_listens_to_all_only_when_asked():
     "origin", [None, "null", "", "http://evil.example", "http://localhost:1", "http://localhost"]
 )
 def test_a_missing_or_foreign_origin_is_refused(here, begun, origin):
-    assert upgrade(here, origin) == 403
+    assert here.upgrade(origin) == 403
     assert not begun
 
 
 def test_a_page_of_this_server_may_open_a_websocket(here):
-    assert upgrade(here, here.address) == 101
-    assert upgrade(here, f"http://127.0.0.1:{here.port}") == 101
+    assert here.upgrade(here.address) == 101
+    assert here.upgrade(f"http://127.0.0.1:{here.port}") == 101
 
 
 def test_who_is_gone_at_once_is_forgotten(here):
     for _ in range(3):
-        upgrade(here, here.address)
-    wait_until(lambda: not here.sessions)
+        here.upgrade(here.address)
+    wait_until(lambda: here.is_left)
 
 
 def test_a_host_that_this_server_is_not_is_refused(here, begun):
     # A name that its owner lets point to 127.0.0.1, once the browser has his page.
     host = f"rebound.example:{here.port}"
-    answer = get(here, Host=host)
+    answer = here.get(Host=host)
     assert answer.status == 421
     assert here.address in answer.text
-    assert upgrade(here, f"http://{host}", host=host) == 421
-    assert get(here, "/static/js/bokeh.min.js", Host=host).status == 421
-    assert get(here, Host=f"127.0.0.1:{here.port}").status == 200
+    assert here.upgrade(f"http://{host}", host=host) == 421
+    assert here.get("/static/js/bokeh.min.js", Host=host).status == 421
+    assert here.get(Host=f"127.0.0.1:{here.port}").status == 200
     assert not begun
 
 
 def test_scripts_are_served_and_nothing_beside_them(here):
-    answer = get(here, f"/{ADDRESS}/view.js")
+    answer = here.get(f"/{ADDRESS}/view.js")
     assert answer.status == 200
     assert "javascript" in answer.getheader("Content-Type")
     assert answer.text == (FOLDER / "view.js").read_text(encoding="utf-8")
-    assert get(here, f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
+    assert here.get(f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
     absolute = quote(str(FOLDER.parent / "serve.py"))
     for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{absolute}"):
-        assert get(here, f"/{ADDRESS}{path}").status in (403, 404)
+        assert here.get(f"/{ADDRESS}{path}").status in (403, 404)
 
 
 def test_a_strange_host_is_told_as_text(here):
-    assert "<b>" not in get(here, Host="<b>x</b>").text
+    assert "<b>" not in here.get(Host="<b>x</b>").text
 
 
-@pytest.mark.parametrize("token", ["abc", "abc.def", "e30", "%00", "a.b.c"])
-def test_a_token_that_is_none_begins_nothing(here, begun, token):
-    assert upgrade(here, here.address, token) == 101  # and is closed at once
-    assert get(here).status == 200
+def made(here, key=None, seconds=300, **payload):
+    """Return a token, by default as the server makes it."""
+    key = here.server._tornado.secret_key if key is None else key
+    session_id = generate_session_id(key, signed=True)
+    return generate_jwt_token(session_id, key, True, payload, expiration=seconds)
+
+
+@pytest.mark.parametrize(
+    "token",
+    [
+        "", "abc", "abc.def", "e30", "%00", "a.b.c", "a, b", "e30.e30", "\xff.\xff",
+        lambda here: made(here, seconds=-1),
+        lambda here: made(here, key=b"of another server"),
+        lambda here: generate_jwt_token(generate_session_id()),
+        lambda here: made(here).partition(".")[0],
+        lambda here: made(here) + "x",
+    ],
+)  # fmt: skip
+def test_a_token_that_is_none_begins_nothing(here, begun, caplog, token):
+    token = token(here) if callable(token) else token
+    assert here.upgrade(here.address, token) == 403
+    assert here.get().status == 200
     assert not begun
+    assert not [record for record in caplog.records if record.exc_info]
+
+
+def test_the_keys_of_two_servers_differ(here):
+    with serving() as other:
+        assert other.upgrade(other.address, here.token()) == 403
 
 
 def test_whoever_only_asks_for_the_page_begins_no_session(here, begun):
-    get(here)  # the first makes the text, for which a page is laid out and thrown away
+    here.get()  # the first makes the text, for which a page is laid out and thrown away
     begun.clear()
     for path in ("/", "/?rig=robot", "/?bokeh-session-id=abc", "/?theme=1"):
-        answer = get(here, path, Bokeh_Session_Id="") if "id" in path else get(here, path)
+        answer = here.get(path, Bokeh_Session_Id="") if "id" in path else here.get(path)
         assert answer.status == 200
         assert "bokeh" in answer.text
     for path in ("/autoload.js?bokeh-autoload-element=a", "/metadata"):
-        assert get(here, path).status == 404
-    assert get(here, method="HEAD").status == 200
+        assert here.get(path).status == 404
+    assert here.get(method="HEAD").status == 200
     assert begun == []
     assert here.sessions == []
 
 
 def test_each_visitor_gets_a_token_of_their_own(here):
-    texts = [get(here).text for _ in range(2)]
+    texts = [here.get().text for _ in range(2)]
     tokens = [re.findall(r'"token":"([^"]+)"', text.replace("&quot;", '"')) for text in texts]
     assert all(len(result) == 1 for result in tokens)
     assert tokens[0] != tokens[1]
@@ -184,33 +180,34 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
 
 
 def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     monkeypatch.setattr(handlers, "MAX_SESSIONS", 2)
+    token = here.token()
     visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
     assert len(here.sessions) == 2
-    answer = get(here)
+    answer = here.get()
     assert answer.status == 503
     assert "open pages is reached" in answer.text
-    assert get(here, method="HEAD").status == 503
-    assert upgrade(here, here.address) == 503
+    assert here.get(method="HEAD").status == 503
+    assert here.upgrade(here.address, token) == 503
     visitors[0].close()
-    wait_until(lambda: get(here).status == 200)
+    wait_until(lambda: here.get().status == 200)
     visitors[1].close()
 
 
 def test_one_client_cannot_fill_the_server(here, monkeypatch):
-    wait_until(lambda: not here.sessions)
+    wait_until(lambda: here.is_left)
     monkeypatch.setattr(handlers, "MAX_SESSIONS_OF_CLIENT", 2)
     visitors = [Visitor(here.address, "?rig=robot&resolution=16") for _ in range(2)]
-    assert upgrade(here, here.address) == 503
-    assert get(here).status == 200, "the server has room for others"
+    assert here.upgrade(here.address) == 503
+    assert here.get().status == 200, "the server has room for others"
     visitors[0].close()
-    wait_until(lambda: upgrade(here, here.address) == 101)
+    wait_until(lambda: here.upgrade(here.address) == 101)
     visitors[1].close()
 
 
 def test_no_other_site_can_frame_the_page(here):
-    answer = get(here)
+    answer = here.get()
     assert answer.getheader("Content-Security-Policy") == "frame-ancestors 'self'"
     assert answer.getheader("X-Frame-Options") == "SAMEORIGIN"
 
@@ -218,14 +215,14 @@ def test_no_other_site_can_frame_the_page(here):
 def test_allowed_origins_can_frame_the_page_but_open_no_websocket(monkeypatch):
     allowed = ("https://course.example", "http://localhost:8000")
     with serving(frames=allowed) as here:
-        answer = get(here)
+        answer = here.get()
         policy = "frame-ancestors 'self' https://course.example http://localhost:8000"
         assert answer.getheader("Content-Security-Policy") == policy
         assert answer.getheader("X-Frame-Options") is None
-        assert upgrade(here, here.address) == 101, "the page in the frame has its own origin"
-        assert [upgrade(here, origin) for origin in allowed] == [403, 403]
+        assert here.upgrade(here.address) == 101, "the page in the frame has its own origin"
+        assert [here.upgrade(origin) for origin in allowed] == [403, 403]
         monkeypatch.setattr(handlers, "MAX_SESSIONS", 0)
-        assert get(here).getheader("Content-Security-Policy") == policy, "the frame says why"
+        assert here.get().getheader("Content-Security-Policy") == policy, "the frame says why"
 
 
 def test_a_large_body_is_refused(here):

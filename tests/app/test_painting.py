@@ -296,6 +296,8 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     state = session.state
     names = state.rig.skeleton.names
     state.param.update(joint=names.index("forearm.L"), brush=True, brush_radius=0.05)
+    assert session.view.last_sent("brush")["mirror"] is None
+    state.brush_mirrored = True
     part = session.view.last_sent("brush")
     assert np.linalg.norm(part["mirror"][:3]) == pytest.approx(1)
     mesh, joint = state.rig.mesh, state.rig.skeleton.joints[state.joint]

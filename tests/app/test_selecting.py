@@ -147,6 +147,18 @@ def test_vertices_of_a_finding_are_selected(session, loop):
     assert np.array_equal(np.flatnonzero(selected(state)), state.diagnosis[code].vertices)
 
 
+def test_enter_applies_the_same_condition_again(bound, loop):
+    field = next(one for one in draw(bound, SELECTION).select(pmui.TextInput))
+    field.value = "weight of elbow > 0.5"
+    chosen = selected(bound.state)
+    select(bound, np.zeros(len(chosen), bool))
+    assert selected(bound.state) is None
+    field.param.trigger("enter_pressed")
+    np.testing.assert_array_equal(selected(bound.state), chosen)
+    loading.show_rig(bound, small_rig())
+    assert field.value == ""
+
+
 def test_a_condition_selects_and_one_that_cannot_be_read_is_told(bound):
     state = bound.state
     section = draw(bound, SELECTION)
@@ -373,7 +385,7 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
         assert weight == round(state.weights[vertex, 1], 4)
         assert in_file == round(state.rig.weights[vertex, 1], 4)
     total, mean = table.content["totals"]
-    assert total[1] == round(state.weights[chosen, 1].sum(), 2)
+    assert total[1] == round(state.weights[chosen, 1].sum(), 4)
     assert mean[2] == round(state.rig.weights[chosen, 1].mean(), 4)
     table._handle_msg({"type": "sort", "sort": 1})
     loop.rest(bound)

@@ -8,9 +8,13 @@ import pytest
 from cutcell import Skeleton
 from cutcell.diagnosis.asymmetry import asymmetry, mirror_image
 from cutcell_app.document import loading
+from cutcell_app.features.correct.commands import rename
+from cutcell_app.features.correct.moving import mirror_of
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.symmetry.controls import about
+from cutcell_app.features.symmetry.controls import PAIRS, about, set_partner
 from cutcell_app.features.weights.scene import painted_colors
+from cutcell_app.widgets.controls import draw
+from cutcell_app.widgets.rows import Rows
 from tests.app.loop import settled
 from tests.app.small import small_rig
 from tests.viewers.arm import arm_rig
@@ -68,3 +72,28 @@ def test_a_character_that_is_not_mirrored_says_so(session, loop):
     assert "not mirrored" in about(session.state)
     assert session.state.asymmetry is None
     assert "Difference" not in resolve(session.state).legend.title
+
+
+def test_a_pair_of_joints_is_changed_undone_and_renamed(mapped, loop):
+    state, names = mapped.state, mapped.state.rig.skeleton.names
+    (rows,) = draw(mapped, PAIRS).select(Rows)
+    assert ("hand.L \u2013 hand.R", "name", 0.0) in [tuple(row) for row in rows.rows]
+    rows.click([row[0] for row in rows.rows].index("hand.L \u2013 hand.R"))
+    assert state.joint == names.index("hand.L")
+    set_partner(mapped, 2 + names.index("forearm.R"))
+    settled(mapped, loop)
+    assert mirror_of(mapped).joint[state.joint] == names.index("forearm.R")
+    assert state.mirror_image.mirror.joint[state.joint] == names.index("forearm.R")
+    assert ("hand.L \u2013 forearm.R", "set", 0.0) in [tuple(row) for row in rows.rows]
+    state.joint = names.index("forearm.R")
+    rename(mapped, names.index("forearm.R"), "claw")
+    assert state.edits.partners == {"hand.L": "claw", "claw": "hand.L"}
+    set_partner(mapped, 0)
+    assert state.edits.partners == {}
+    set_partner(mapped, 1)
+    assert mirror_of(mapped).joint[state.joint] == -1
+
+
+def test_before_a_character_is_there_no_pairs_are(session):
+    (rows,) = draw(session, PAIRS).select(Rows)
+    assert rows.rows == []

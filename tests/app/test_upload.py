@@ -10,7 +10,7 @@ from cutcell.errors import FileError
 from cutcell_app.files.reading import main_file
 from cutcell_app.files.receive import MAX_UPLOAD, NAME_BYTES, Receiver, safe_name
 from cutcell_app.files.storage import Storage
-from cutcell_app.files.upload_cache import UploadCache
+from cutcell_app.files.upload_cache import SPARE_BYTES, UploadCache
 
 
 @pytest.fixture
@@ -139,6 +139,18 @@ def test_names_of_85_chinese_letters_arrive(receiver):
     assert path.read_bytes() == b"1234"
     assert path.name.endswith("骨骨.glb")
     assert len(path.name.encode()) <= NAME_BYTES
+
+
+def test_pieces_count_against_the_room_that_was_announced(receiver, keep, monkeypatch):
+    monkeypatch.setattr(Storage, "free", lambda self: SPARE_BYTES + 10)
+    receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 9}]})
+    with pytest.raises(FileError, match="no room"):
+        keep.begin(2, "another page")
+    receiver.answer({"type": "upload-piece", "index": 0, "data": b"12345"})
+    monkeypatch.setattr(Storage, "free", lambda self: SPARE_BYTES + 5)
+    with pytest.raises(FileError, match="no room"):
+        keep.begin(2, "another page")
+    assert keep.begin(1, "another page")
 
 
 def test_after_a_full_disk_uploads_work_again(receiver, tmp_path, monkeypatch):

@@ -22,6 +22,7 @@ def put(keep, size=1, owner="a page", name="a.glb"):
     group = keep.begin(size, owner)
     group.paths = [group.folder / name]
     group.paths[0].write_bytes(b"1")
+    group.written = size
     return group
 
 
@@ -113,11 +114,22 @@ class TestQuota:
         left = put(keep)
         keep.leave(left.key)
         monkeypatch.setattr(Storage, "free", lambda self: 300 * MB)
-        keep.begin(40 * MB, "a page")
+        put(keep, 40 * MB)
         assert left.folder.exists()
         with pytest.raises(FileError, match="no room for 50 MB: 300 MB are free"):
             keep.begin(50 * MB, "a page")
         assert not left.folder.exists(), "what nobody uses made way first"
+
+    def test_the_disk_has_room_for_all_that_is_announced(self, keep, monkeypatch):
+        monkeypatch.setattr(Storage, "free", lambda self: 300 * MB)
+        first = keep.begin(30 * MB, "a page")
+        with pytest.raises(FileError, match="no room for 30 MB: 270 MB are free"):
+            keep.begin(30 * MB, "another page")
+        first.written = 20 * MB
+        monkeypatch.setattr(Storage, "free", lambda self: 280 * MB)
+        keep.begin(14 * MB, "another page")
+        keep.drop(first)
+        keep.begin(10 * MB, "a page")
 
 
 class TestSweeping:

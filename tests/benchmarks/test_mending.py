@@ -114,7 +114,7 @@ def test_each_damage_has_a_repair():
 @pytest.mark.parametrize("name", DAMAGES)
 def test_real_characters_are_damaged_in_some_rows_only(name, tmp_path):
     one = DAMAGES[name]
-    if not one.file.exists():
+    if one.build is None and not one.file.exists():
         pytest.skip(f"{one.file.name} is not at hand")
     rig, path, plain = one.load(), tmp_path / "damaged.glb", tmp_path / "plain.glb"
     which = damage.write_damaged(one, rig, path)

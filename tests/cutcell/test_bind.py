@@ -1,5 +1,6 @@
 """What binding must never depend on, and what it tells."""
 
+import re
 import threading
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.spatial.transform import Rotation
 import cutcell
 from cutcell import Cancelled, ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, bind
 from tests import meshes
-from tests.bars import bar
+from tests.bars import bar, side_by_side
 
 MIXED = cutcell.Method(connectivity=26, leaf="extend", max_influences=3, threshold=0.05)
 
@@ -240,30 +241,50 @@ def test_joints_that_get_no_weight_are_named():
         assert any("twin" in warning for warning in result.warnings) == is_named
 
 
+def thin_hand():
+    """Make a palm with four thin fingers, whose first bones are short and below its skin."""
+    palm = trimesh.creation.box(bounds=[[-0.1, -0.1, -0.02], [0, 0.1, 0.02]])
+    parts = [palm.subdivide().subdivide().subdivide().subdivide()]
+    joints, parents = [[-0.08, 0, 0], [-0.05, 0, 0]], [-1, 0]
+    for y in (-0.06, -0.02, 0.02, 0.06):
+        finger = trimesh.creation.box(
+            bounds=[[-0.01, y - 0.004, -0.004], [0.009, y + 0.004, 0.004]]
+        )
+        parts.append(finger.subdivide().subdivide().subdivide())
+        for k, x in enumerate((-0.01, 0, 0.003, 0.006)):
+            parents.append(1 if k == 0 else len(joints) - 1)
+            joints.append([x, y, 0])
+    mesh = trimesh.util.concatenate(parts)
+    return Rig(TriangleMesh(mesh.vertices, mesh.faces), Skeleton(joints, parents))
+
+
+def test_a_lattice_too_coarse_for_a_joint_names_a_resolution_that_is_not():
+    rig = thin_hand()
+    coarse = bind(rig, 8)
+    lost = np.flatnonzero(~coarse.weights.any(axis=0))
+    assert len(lost)
+    (warning,) = (text for text in coarse.warnings if "get no weight" in text)
+    resolution = int(re.search(r"choose a resolution of (\d+)", warning)[1])
+    assert 8 < resolution < 128
+    fine = bind(rig, resolution)
+    assert fine.weights.any(axis=0).all()
+    assert not any("get no weight" in text for text in fine.warnings)
+
+
 def test_characters_side_by_side_are_bound_as_if_alone():
     small, alone = cutcell.Method(resolution=20), bar(12)
     count, joints = len(alone.mesh.vertices), len(alone.skeleton.joints)
-    width = np.ptp(alone.mesh.vertices, axis=0)[0]
-    aside = np.array([1.2 * width, 0, 0])
-    mesh = cutcell.TriangleMesh(
-        np.vstack([alone.mesh.vertices, alone.mesh.vertices + aside]),
-        np.vstack([alone.mesh.faces, alone.mesh.faces + count]),
-    )
-    parents = alone.skeleton.parents
-    skeleton = cutcell.Skeleton(
-        np.vstack([alone.skeleton.joints, alone.skeleton.joints + aside]),
-        np.concatenate([parents, np.where(parents < 0, -1, parents + joints)]),
-        deform=np.tile(alone.skeleton.deform, 2),
-    )
-    allowed = np.kron(np.eye(2, dtype=bool), np.ones((count, joints), bool))
-    both = Rig(mesh, skeleton, allowed=allowed)
+    both = side_by_side(alone)
     one, two = cutcell.bind(alone, method=small), cutcell.bind(both, method=small)
     assert two.method.resolution == round(2.2 * small.resolution)
     np.testing.assert_allclose(two.weights[:count, :joints], one.weights, atol=0.05)
     assert not two.weights[:count, joints:].any()
     assert cutcell.bind(both, 16).method.resolution == 16, "an R that is given stays"
     share = cutcell.explain(both, 0, method=small, distances=two.distances).joints[0]
-    assert share.name in skeleton.names[:joints]
+    assert share.name in both.skeleton.names[:joints]
+    again = cutcell.bind(both, method=small, graph=two.graph)
+    assert again.graph is two.graph
+    np.testing.assert_array_equal(again.weights, two.weights)
 
 
 def test_few_influences_follow_the_distances_of_many(demo_paths):

@@ -63,6 +63,7 @@ def documents() -> dict[str, list[Builder]]:
     packed = column()
     animate(packed, *FLIPPED)
     bare = column()
+    animate(bare, *FLIPPED)
     del bare.json["nodes"][2]["skin"]
     return {
         "plain": [moving, held, bare],

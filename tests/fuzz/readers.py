@@ -15,6 +15,8 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -22,6 +24,7 @@ from typing import Any
 import numpy as np
 
 import cutcell
+from cutcell.io import keeps_document
 from cutcell.io.gltf.read import compressed as gltf_draco
 from cutcell.io.scenes import document as scenes
 from cutcell.isolated.__main__ import limit_memory
@@ -67,7 +70,10 @@ def check(number: int) -> None:
 
 
 def check_files(folder: Path, files: Files, saved: bool = True) -> None:
-    """See that files load, play, and are saved, or that a sentence names the one that does not."""
+    """See that files load, play, and are saved, or that a sentence names the one that does not.
+
+    A glTF document that loads can be saved.
+    """
     for name, content in files.items():
         (folder / name).write_bytes(content)
     rig = _ours(lambda: cutcell.load(folder / next(iter(files))), [*files])
@@ -77,6 +83,8 @@ def check_files(folder: Path, files: Files, saved: bool = True) -> None:
     for clip in rig.clips:
         _ours(lambda clip=clip: clip.sample([0, clip.duration / 3, clip.duration]), [""])  # type: ignore[misc]
         assert len(clip.times) <= 3601
+    if keeps_document(rig):
+        _check_kept(rig, folder / "kept.glb")
     if rig.weights is None:
         return
     assert np.isfinite(rig.weights).all()
@@ -85,6 +93,21 @@ def check_files(folder: Path, files: Files, saved: bool = True) -> None:
     assert (np.minimum(np.abs(sums), np.abs(sums - 1)) < EXACT).all()
     for end in (".glb", ".txt", ".npz") if saved else ():
         _check_saved(rig, folder / f"out{end}")
+
+
+def _check_kept(rig: cutcell.Rig, path: Path) -> None:
+    """See that what loaded goes back into its document, also after its joints moved."""
+    if not len(rig.skeleton.joints):
+        joint = cutcell.Skeleton(rig.mesh.vertices[:1], [-1], ("joint",))
+        rig = replace(rig, skeleton=joint)
+    if rig.weights is None:
+        shape = len(rig.mesh.vertices), len(rig.skeleton.joints)
+        allowed = np.ones(shape, bool) if rig.allowed is None else rig.allowed
+        rig = rig.with_weights((allowed.cumsum(axis=1) == 1) & allowed)
+    cutcell.save(path, rig)
+    by = 0.01 * np.ptp(rig.mesh.vertices, axis=0).max()
+    with suppress(cutcell.SkeletonError):  # a skin without matrices
+        cutcell.save(path, rig.with_joints(rig.skeleton.joints + by))
 
 
 def _check_saved(rig: cutcell.Rig, path: Path) -> None:

@@ -102,9 +102,7 @@ def test_each_view_is_a_panel(scenes, tmp_path):
 
 
 def test_numbers_of_a_legend_are_read():
-    assert _range(Legend("", "error", "0", "0.55 in the file's units")) == (
-        0, 0.55, "in the file's units"
-    )  # fmt: skip
+    assert _range(Legend("", "error", "0", "0.55 m")) == (0, 0.55, "m")
     assert _range(Legend("", "difference", "−1", "+1")) == (-1, 1, "")
     assert _range(Legend("", "error", "0%", "100%")) == (0, 100, "%")
     assert _range(Legend("", "error", "few", "many")) is None

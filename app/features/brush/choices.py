@@ -46,7 +46,7 @@ class Choices(param.Parameterized):
     )  # fmt: skip
     brush_strength = param.Number(0.5, bounds=(MIN_STRENGTH, 1), step=0.05, label="Strength")
     brush_value = param.Number(1.0, bounds=(0, 1), step=0.05, label="Weight to paint")
-    brush_mirrored = param.Boolean(True, label="Mirror")
+    brush_mirrored = param.Boolean(False, label="Mirror")
     brush_selection: Any = param.Parameter(
         None, doc="The `Selection` that strokes are limited to, of whatever mesh; or None."
     )

@@ -1,12 +1,15 @@
 """State of the panel Check: findings, and repairs."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import param
 
+from cutcell.diagnosis import Finding
+from cutcell.editing import Edits
 from cutcell.rig import Rig
 
+from ..layers.stack import part_layers
 from ..panel import Panel
 
 EXPORT = "export:"
@@ -36,14 +39,20 @@ class Repair:
 
 
 PANEL = Panel(
-    "Check",
-    '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>',
-    works_without_skeleton=True,
+    "Check", '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>', works_without_skeleton=True
 )
+
+
+def is_done(finding: Finding, edits: Edits) -> bool:
+    """Return whether each part that a finding names has a layer that binds it."""
+    return bool(finding.parts) and {vertex for vertex, _ in finding.parts} <= {*part_layers(edits)}
 
 
 class Choices(param.Parameterized):
     """The findings, and which of them is looked at."""
+
+    if TYPE_CHECKING:
+        edits: Edits
 
     diagnosis: Any = param.Parameter(None, doc="The cutcell.Diagnosis, or None so far.")
     export_diagnosis: Any = param.Parameter(
@@ -52,7 +61,14 @@ class Choices(param.Parameterized):
     finding = param.String(
         "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
     )
+    tried: Any = param.Parameter(None, doc="Weights that are previewed, shape (n, j), or None.")
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
+
+    @property
+    def open_findings(self) -> list[Any]:
+        """The findings of the file but for those of parts that were all bound or kept by now."""
+        findings = () if self.diagnosis is None else self.diagnosis.findings
+        return [one for one in findings if not is_done(one, self.edits)]
 
     @property
     def selected_finding(self) -> Any:

@@ -1,5 +1,9 @@
 """The panel Check: what is wrong with the character, where, and what to do about it."""
 
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -7,18 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.diagnosis.finding import TITLES
 from cutcell.diagnosis.leaks import moves_own_part
-from cutcell.editing import Filled
+from cutcell.editing import Attached, Edits, Filled, FromFile, JointEdit
+from cutcell.editing.layers.contents import Content
+from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 
 from ...document.session import Session
 from ...document.state import State
 from ...widgets import controls as ui
-from ..correct.commands import correct_part, leave_out, lock
+from ...widgets.rows import Rows
+from ..correct.commands import correct, leave_out, lock
+from ..layers import stack
 from ..layers.buttons import blend_button, file_button, recompute_button
 from ..layers.stack import components_of, part_layers
 from ..select.selections import finding_vertices, select_finding
-from .choices import EXPORT
+from ..weights.results import weights_with
+from .choices import EXPORT, is_done
 from .results import look_at, repair, take_back
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
@@ -37,12 +47,13 @@ def summary(state: State) -> str:
         return ""
     if state.diagnosis is None:
         return "The file is checked once weights are computed."
-    if not state.diagnosis.findings:
+    if not state.open_findings:
         return "No problems in the mesh, skeleton or weights."
-    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
+    counts = Counter(one.severity for one in state.open_findings)
+    return f"{counted(counts)}. Choose one to see it."
 
 
-def counted(counts: dict[str, int]) -> str:
+def counted(counts: Mapping[str, int]) -> str:
     """Say how many findings there are of each severity."""
     parts = [f"{counts[s]} {s}{'s' * (counts[s] != 1)}" for s in SEVERITIES if counts[s]]
     return ", ".join(parts) or "nothing"
@@ -57,26 +68,30 @@ def _strong_line(text: str) -> Any:
 
 
 def _findings(state: Any) -> list[Any]:
-    """Return the findings below a heading for each severity."""
+    """Return the findings below a heading for each severity, and last what is done."""
     if state.diagnosis is None:
         return []
+    titles = (*(f"{severity}s" for severity in SEVERITIES), "Done")
+    groups: dict[str, list[Finding]] = {title: [] for title in titles}
+    for one in state.diagnosis.findings:
+        groups[f"{one.severity}s" if one in state.open_findings else "Done"].append(one)
     return [
-        ui.section(
-            f"{severity}s",
-            [_entry(finding, finding.code) for finding in state.diagnosis.of(severity)],
-            margin=(8, 0),
-        )
-        for severity in SEVERITIES
-        if state.diagnosis.of(severity)
+        ui.section(title, [_entry(finding, finding.code) for finding in group], margin=(8, 0))
+        for title, group in groups.items()
+        if group
     ]
 
 
 def _exported(state: Any) -> list[Any]:
     """Return the findings about the weights that an export contains."""
-    if state.export_diagnosis is None:
-        lines: list[Any] = [_line("Checking the weights ...")]
+    if state.edits.base == "file" and not state.edits.layers:
+        lines: list[Any] = [_line("The same as in the file.")]
+    elif state.export_diagnosis is None:
+        lines = [_line("Checking the weights ...")]
     else:
-        lines = [_entry(one, EXPORT + one.code) for one in state.export_diagnosis.findings]
+        findings = state.export_diagnosis.findings
+        lines = [_entry(one, EXPORT + one.code) for one in findings
+                 if not is_done(one, state.edits)]  # fmt: skip
     return [ui.section("Weights in the export", lines or _line("No faults."), margin=(8, 0))]
 
 
@@ -95,20 +110,22 @@ def _entry(finding: Finding, code: str) -> Any:
 
 def _place(state: Any, code: str) -> list[Any]:
     """Return the details of a finding while it is the chosen one."""
-    followed = (state.finding, state.export_diagnosis)  # but no weights that are not checked yet
-    return _details(state.session.state) if followed[0] == code else []
+    # But no weights that are not checked yet.
+    followed = (state.finding, state.export_diagnosis, state.edits)
+    return _details(state.session) if followed[0] == code else []
 
 
-def _details(state: State) -> list[Any]:
+def _details(session: Session) -> list[Any]:
     """Return details of the chosen finding, its advice, and what repairs it."""
-    finding = state.selected_finding
+    state, finding = session.state, session.state.selected_finding
     if finding is None:
         return []
-    rows: list[Any] = [_line(text) for text in finding.details[:MAX_DETAILS]]
+    details = () if finding.parts else finding.details[:MAX_DETAILS]
+    rows: list[Any] = [_line(text) for text in details]
     if not state.bare and (len(finding.vertices) or len(finding.faces)):
         rows.append(ui.button("Select its vertices", select_finding, icon="highlight_alt"))
     if state.finding.startswith(EXPORT):
-        rows += _part_choices(state, finding)
+        rows += _part_choices(session, finding)
         return rows + _layers(state, finding)
     more = len(finding.details) - MAX_DETAILS
     rows += [_line(f"and {more} more")] if more > 0 else []
@@ -118,7 +135,7 @@ def _details(state: State) -> list[Any]:
     elif finding.repair:
         rows.append(_strong_line(f"Repair: {finding.repair}."))
         rows.append(ui.button("Repair", partial(repair, codes=[finding.code]), icon="build"))
-    rows += _part_choices(state, finding)
+    rows += _part_choices(session, finding)
     if finding.code in LEFT_OUT:
         rows += _joint_choices(state, finding.joints)
     if finding.code in OF_PARTS and not state.bare:
@@ -146,21 +163,68 @@ def _layers(state: State, finding: Finding) -> list[Any]:
     return [_strong_line("The weights there are the file's."), _strong_line(finding.advice), *rows]
 
 
-def _part_choices(state: State, finding: Finding) -> list[Any]:
-    """Return buttons that make parts rigid to the joint that a finding names for each."""
+def _part_choices(session: Session, finding: Finding) -> list[Any]:
+    """Return for each part that a finding names what it may follow, each with its preview."""
+    state = session.state
     if state.bare or state.binding is None:
-        return []
-    names, graph = state.rig.skeleton.names, state.binding.graph
-    component = components_of(graph)
-    buttons = []
-    for vertex, joint in finding.parts[:MAX_DETAILS]:
-        rigid, layer = Filled({names[joint]: 1.0}), part_layers(state.edits).get(vertex)
-        if layer is not None and layer.content == rigid:
-            continue
+        return [_line(text) for text in finding.details[:MAX_DETAILS] if finding.parts]
+    rig, component = state.rig, components_of(state.binding.graph)
+    rows: list[Any] = []
+    parts = zip(
+        finding.parts, finding.empty or [-1] * len(finding.parts), finding.details, strict=False
+    )
+    for (vertex, nearest), empty, text in [*parts][:MAX_DETAILS]:
+        contents: dict[str, Content] = {"with the body it touches": Attached()}
+        notes = {empty: ", empty so far"}
+        notes.setdefault(nearest, "")
+        for joint, note in notes.items():
+            if joint >= 0:
+                title = f"rigid to {ui.joint_title(rig, joint)}{note}"
+                contents[title] = Filled({rig.skeleton.names[joint]: 1.0})
+        contents["keep as in the file"] = FromFile()
         vertices = np.flatnonzero(component == component[vertex]).tolist()
-        act = partial(correct_part, vertices=vertices, content=rigid)
-        buttons.append(ui.button(f"Rigid to {ui.joint_title(state.rig, joint)}", act, icon="link"))
-    return buttons
+        tries = [with_part(state, vertices, one) for one in contents.values()]
+        layer, title = part_layers(state.edits).get(vertex), text.partition(" (")[0]
+        which = [*contents.values()]
+        rows += [
+            _line(text),
+            ui.Control(
+                partial(_tries, session, tries), act=partial(_take, tries), label=title,
+                rows=[(f"{title}: {how}", "", 0.0) for how in contents],
+                chosen=which.index(layer.content) if layer and layer.content in which else -1,
+                **ui.FULL,
+            ),
+        ]  # fmt: skip
+    return rows
+
+
+def _tries(session: Session, tries: list[Edits], **options: Any) -> Rows:
+    """Return a list of edits, of which the one under the pointer is previewed."""
+    widget = Rows(points=True, **options)
+
+    def point(event: Any) -> None:
+        session.state.tried = None
+        with suppress(CutcellError):  # it is said where it is chosen
+            if event.new >= 0:
+                session.state.tried = weights_with(session.state, tries[event.new])
+
+    widget.param.watch(point, "pointed")
+    return widget
+
+
+def _take(tries: list[Edits], session: Session, row: int) -> None:
+    session.history.part()
+    correct(session, tries[row])
+
+
+def with_part(state: State, vertices: list[int], content: Content) -> Edits:
+    """Return the edits with a part bound otherwise; the joint that it follows carries weight."""
+    edits, skeleton = stack.with_part(state.edits, vertices, content), state.rig.skeleton
+    joints = dict(edits.joints)
+    for name in content.joints_named():
+        if not skeleton.deform[skeleton.names.index(name)]:
+            joints[name] = replace(joints.get(name, JointEdit()), deform=True)
+    return replace(edits, joints=joints)
 
 
 def _joint_choices(state: State, joints: NDArray[np.intp]) -> list[Any]:
@@ -193,6 +257,7 @@ def _repairs(state: Any) -> list[Any]:
     if len(able) > 1:
         label = f"Repair all {len(able)} findings"
         rows.append(ui.button(label, partial(repair, codes=able), icon="build"))
+        rows.append(_line(f"{', '.join(TITLES[code] for code in able)}."))
     if state.repair is None:
         return rows
     done = [_line(text) for text in state.repair.done]

@@ -4,7 +4,7 @@ from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
 from cutcell.geodesics import BoneDistances
-from cutcell.graph.fingerprint import skeleton_fingerprint
+from cutcell.graph.fingerprint import data_fingerprint
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
@@ -26,6 +26,8 @@ def watch(session: Session) -> None:
     follow = session.state.param.watch
     follow(lambda *events: _begin_anew(session), "rig")
     follow(lambda *events: _arrived(session, ""), "diagnosis")
+    follow(lambda *events: session.state.param.update(tried=None),
+           ["rig", "edits", "finding", "panel"])  # fmt: skip
     follow(lambda *events: _arrived(session, EXPORT), "export_diagnosis")
 
 
@@ -70,7 +72,7 @@ def _reusable(state: State) -> BoneDistances | None:
     if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
         return None
     distances: BoneDistances = state.binding.distances
-    of_rig = skeleton_fingerprint(state.rig.skeleton)
+    of_rig = data_fingerprint(state.rig.skeleton)
     return distances if of_rig.items() <= distances.fingerprint.items() else None
 
 
@@ -143,11 +145,7 @@ def take_back(session: Session) -> None:
 
 RESULTS = (
     Derived(
-        "diagnosis",
-        _inputs,
-        _diagnosis,
-        more=lambda state: (_reusable(state),),
-        after=("binding",),
+        "diagnosis", _inputs, _diagnosis, more=lambda state: (_reusable(state),), after=("binding",)
     ),
     Derived(
         "export_diagnosis",

@@ -8,6 +8,7 @@ from cutcell.runtime.display import count
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.finding_scene import finding_marks, finding_pose
 from cutcell_viewers.palette import BODY, MARK, Color
+from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo
 from ...document.state import State
@@ -27,6 +28,9 @@ def named(finding: Finding) -> str:
 def scene(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Check; plain while no finding is selected."""
     rig, finding = state.rig, state.selected_finding
+    if state.tried is not None:
+        style, legend = memo("tried", (rig, state.tried), lambda: weight_colors(rig, state.tried))
+        return Description(character(state, memo, bones_coloured=True, **style), legend=legend)
     marks = {}
     if finding is not None:
         marks = memo("finding", (rig, finding), lambda: finding_marks(rig, finding))

@@ -33,16 +33,16 @@ def listed(rig: Any, chosen: Sequence[str]) -> list[str]:
     return [*offered(rig), *(name for name in chosen if is_settings(name))]
 
 
-def standard(rig: Any) -> list[str]:
-    """Return the methods that stand side by side before any is chosen."""
-    return [name for name in offered(rig) if name in (NOW, "artist", "euclidean")]
+def standard(rig: Any, base: str = "computed") -> list[str]:
+    """Return the methods that stand side by side before any is chosen.
+
+    Over a file's weights, what is on the page would be the same twice.
+    """
+    first = NOW if base == "computed" else "cutcell_rig"
+    return [name for name in offered(rig) if name in (first, "artist", "euclidean")]
 
 
-PANEL = Panel(
-    "Compare",
-    '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
-    poses=True,
-)
+PANEL = Panel("Compare", '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>', poses=True)
 
 
 class Choices(param.Parameterized):

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from ...document.session import Session
 from ...document.state import State
 from ...widgets import controls as ui
 from ...widgets.methods import Methods
@@ -38,20 +37,8 @@ def _fields(state: Any) -> dict[str, Any]:
     return {"options": {**FIELDS, **error}, "value": field}
 
 
-def _subtrahends(state: Any) -> dict[str, str]:
-    return {"None": "", **{title_of(name): name for name in state.methods}}
-
-
 def _is_comparing(state: Any) -> bool:
     return any(name == "compared" for name, *_ in state.computing)
-
-
-def _table(state: Any) -> dict[str, Any]:
-    return {"rows": rows_of(state)}
-
-
-def _choose(session: Session, row: tuple[str, bool]) -> None:
-    actions.choose(session, *row)
 
 
 def rows_of(state: State) -> list[dict[str, Any]]:
@@ -121,10 +108,6 @@ def _number(value: float | None, column: int) -> str:
     return f"{value:.0f}" if value >= 99.5 else f"{value:.1f}"
 
 
-def _is_full(state: Any) -> bool:
-    return len(state.methods) >= MAX_VIEWS
-
-
 ADD = ui.column(
     ui.row(
         ui.select("added_option", "Change", margin=ui.BESIDE),
@@ -136,7 +119,7 @@ ADD = ui.column(
             visible=lambda state: bool(state.added_option),
         ),
     ),
-    ui.button("Add settings", actions.add, disabled=_is_full),
+    ui.button("Add settings", actions.add, disabled=lambda state: len(state.methods) >= MAX_VIEWS),
 )
 FIELD = ui.choice("compare_field", shows=_fields)
 CONTROLS = ui.column(
@@ -148,7 +131,7 @@ CONTROLS = ui.column(
         ui.select(
             "minus",
             "Difference to",
-            options=_subtrahends,
+            options=lambda state: {"None": "", **{title_of(name): name for name in state.methods}},
             margin=(10, 0, 4, 0),
             visible=lambda s: s.rig is None or field_shown(s) != "error",
         ),
@@ -158,7 +141,12 @@ CONTROLS = ui.column(
     ui.section(
         "",
         ui.Control(
-            Methods, act=_choose, columns=COLUMNS, shows=_table, margin=(2, 0, 6, 0), **ui.WIDE
+            Methods,
+            act=lambda session, row: actions.choose(session, *row),
+            columns=COLUMNS,
+            shows=lambda state: {"rows": rows_of(state)},
+            margin=(2, 0, 6, 0),
+            **ui.WIDE,
         ),
         ADD,
         ui.button("Stop computing", actions.cancel, visible=_is_comparing),

@@ -137,20 +137,14 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
 def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
     """Set the methods for a new character: those of an address, else those chosen before.
 
-    Parameters
-    ----------
-    state : State
-        With the new character.
-    before : Rig or None
-        The character that was open before.
-    arrival : mapping
-        "methods", those of `SINGLE` and "settled", as far as an address says them.
+    `arrival` may have "methods", those of `SINGLE`, and "settled".
     """
-    chosen = [] if state.methods == standard(before) else state.methods
+    standards = [standard(before, base) for base in ("computed", "file")]
+    chosen = [] if state.methods in standards else state.methods
     wanted = arrival.get("methods", chosen)
     names = [name for name in wanted if name in listed(state.rig, wanted)]
     if len(names) < FEWEST_VIEWS:
-        names = standard(state.rig)
+        names = standard(state.rig, state.opening.base)
     single = _single(state, arrival, names)
     state.param.update(methods=names, **single, settled=arrival.get("settled", ()))
 

@@ -23,7 +23,7 @@ from .choices import NOW
 from .settings import is_settings, title_of_settings
 
 TITLES = {
-    NOW: "cutcell (current settings)",
+    NOW: "Current weights",
     "artist": "From file",
     "bbw": "Bounded biharmonic",
     "cutcell": "cutcell (paper)",
@@ -83,16 +83,24 @@ def title_of(name: str) -> str:
     return TITLES.get(name) or title or name.replace("_", " ").capitalize()
 
 
+def shown_title(state: State, name: str) -> str:
+    """Return the title of a method, or the caption that the step of a lesson gives it."""
+    step = state.lesson_step
+    return (step and step.captions.get(name)) or title_of(name)
+
+
 def caption_of(state: State, name: str) -> str:
-    """Return the title of a method's view, with its progress or what is subtracted."""
-    title = title_of(name)
+    """Return the title of a method's view, with its progress, its error or what is subtracted."""
+    title = shown_title(state, name)
     result = state.compared.get(name)
     if weights_of(state, name) is None:
         is_failed = result is not None and result.failed
         progress = "computing" if ("compared", name) in state.computing else "waiting"
         return f"{title} · {'failed' if is_failed else progress}"
+    if field_shown(state) == "error" and (errors := errors_of(state, name)) is not None:
+        return f"{title} · {10 * errors.mean**0.5:.0f} mm"  # the metric is in cm²
     if state.minus and subtracted(state) is not None:
-        return f"{title} − {'itself' if name == state.minus else title_of(state.minus)}"
+        return f"{title} − {'itself' if name == state.minus else shown_title(state, state.minus)}"
     return title
 
 
@@ -108,7 +116,8 @@ def weights_of(state: State, name: str) -> Any:
 
 def subtracted(state: State) -> Any:
     """Return the weights that are subtracted from all others, or None."""
-    return weights_of(state, state.minus) if state.minus in state.methods else None
+    is_subtracted = state.minus in state.methods and field_shown(state) != "error"
+    return weights_of(state, state.minus) if is_subtracted else None
 
 
 def looks_of(

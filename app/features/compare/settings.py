@@ -35,13 +35,7 @@ def is_settings(name: str) -> bool:
 
 
 def settings(name: str) -> Method:
-    """Return the method of a name.
-
-    Raises
-    ------
-    ParameterError
-        It contains no options, or one that is out of its range.
-    """
+    """Return the method of a name; raise a `ParameterError` for options that are wrong."""
     options: dict[str, Any] = {"method": "animation"}
     try:
         if not name.startswith(PREFIX):

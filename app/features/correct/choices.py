@@ -11,7 +11,7 @@ import param
 
 from cutcell.binding import Binding
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.restructure import restructured, restructured_skeleton
+from cutcell.editing.restructure import restructured_skeleton
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 
@@ -30,6 +30,7 @@ class Choices(param.Parameterized):
         binding: Any
 
     edits: Any = param.Parameter(Edits(), doc="A cutcell.Edits.")
+    opening: Any = param.Parameter(Edits(), doc="The edits that the character was opened with.")
     layer = param.Integer(None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.")
     own: Any = param.Parameter(None, doc="The character without edits: a cutcell.Rig.")
     joint_handle = param.Boolean(False, label="Show move handle")
@@ -43,6 +44,11 @@ class Choices(param.Parameterized):
     part = param.Integer(
         None, allow_None=True, doc="A vertex of the connected component that is looked at."
     )
+
+    @property
+    def first_edits(self) -> Edits:
+        """The edits that the character was opened with; choices hold their method."""
+        return replace(self.opening, method={})
 
     @property
     def dragged(self) -> Any:
@@ -62,45 +68,10 @@ class Choices(param.Parameterized):
 
 @dataclass(frozen=True, eq=False)
 class Dragged:
-    """Preview while joints are dragged.
-
-    Parameters
-    ----------
-    rig : Rig
-        With the joints where the pointer has them.
-    binding : Binding
-        The newest that there is; of joints where they were a moment ago.
-    """
+    """Preview while joints are dragged: the rig as the pointer has it, and the newest binding."""
 
     rig: Rig
     binding: Binding
-
-
-def applied(own: Rig, edits: Edits) -> Rig:
-    """Return a rig with the joints of its edits, where these put them.
-
-    Parameters
-    ----------
-    own : Rig
-        As it is where nothing is edited.
-    edits : Edits
-
-    Raises
-    ------
-    SkeletonError
-        No joint that may carry weight would be left, or one stands too far from the mesh.
-    """
-    rig = restructured(own, edits)
-    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
-    for joint, name in enumerate(rig.skeleton.names):
-        one = edits.joints.get(name)
-        if one is not None and one.deform is not None:
-            deform[joint] = one.deform
-        if one is not None and one.position is not None:
-            joints[joint] = one.position
-    if not np.array_equal(deform, rig.skeleton.deform):
-        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
-    return rig.with_joints(joints)
 
 
 def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:
@@ -150,7 +121,10 @@ def renamed(edits: Edits, name: str, new: str) -> Edits:
     was = None if one.added else one.was or name
     one = replace(one, was=None if was == new else was)
     edited = {now(key): other for key, other in {**edits.joints, name: one}.items()}
-    joints = {key: replace(other, parent=now(other.parent)) for key, other in edited.items()}
+    joints = {
+        key: replace(other, parent=now(other.parent), partner=now(other.partner))
+        for key, other in edited.items()
+    }
     return replace(edits.renamed(now), joints=joints)
 
 
@@ -188,13 +162,7 @@ def to_text(edits: Edits) -> str:
 
 
 def from_text(text: str) -> Edits:
-    """Read what `to_text` returns.
-
-    Raises
-    ------
-    ValueError
-        It is something else.
-    """
+    """Read what `to_text` returns; raise a `ValueError` for other texts."""
     try:
         packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
         plain = zlib.decompressobj().decompress(packed, MAX_BYTES)

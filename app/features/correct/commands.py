@@ -32,13 +32,7 @@ def correct(session: Session, edits: Edits) -> None:
 
 
 def edited_state(session: Session, edits: Edits) -> dict[str, Any]:
-    """Return the values of the state that edits of the open character change.
-
-    Raises
-    ------
-    CutcellError
-        It cannot be edited so.
-    """
+    """Return the values of the state that edits of the open character change."""
     state = session.state
     return changes(state, edited_rig(state.own, edits), edits)
 
@@ -199,8 +193,8 @@ def swap(session: Session, rig: Rig, **more: Any) -> None:
 
 
 def clear(session: Session) -> None:
-    """Correct nothing any more."""
-    correct(session, Edits())
+    """Correct nothing any more; a file's own weights stay the base."""
+    correct(session, Edits(base=session.state.opening.base))
 
 
 def save(session: Session) -> None:

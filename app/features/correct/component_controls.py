@@ -99,10 +99,6 @@ def _bind(session: Session, how: Any, joint: int | None = None) -> None:
     correct.correct_part(session, set(vertices.tolist()), content)
 
 
-def _joint_names(state: Any) -> list[str]:
-    return short_names(state.rig.skeleton.names) if _how(state) == "filled" else []
-
-
 def _rigid_to(state: Any) -> int:
     """Return the joint that the component that is looked at is rigid to."""
     one: Any = _chosen(state)
@@ -123,7 +119,7 @@ COMPONENTS = ui.folded(
     ui.select("", "Bind this part", act=_bind, shows=_ways, late=LATE, margin=(16, 0, 4, 0)),
     ui.pick(
         "Joint",
-        _joint_names,
+        lambda state: short_names(state.rig.skeleton.names) if _how(state) == "filled" else [],
         _rigid_to,
         lambda session, joint: _bind(session, "filled", joint),
         late=LATE, visible=lambda state: _how(state) == "filled", margin=(12, 0, 4, 0),

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cutcell.editing import Layer
+from cutcell.geometry.triangles import label_components
 from cutcell.graph import MESH, CutCellGraph
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.description import Actor
@@ -130,19 +130,9 @@ def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.f
 
 
 def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return each vertex's connected component, and the components and sizes.
-
-    Returns
-    -------
-    which : array, shape (n,)
-        The largest part is 0.
-    sizes : array, shape (c,)
-        In vertices of the file.
-    """
-    welded = graph.first_point
-    a, b = graph.edges[graph.edge_kind == MESH].T
-    links = coo_array((np.ones(len(a), bool), (a, b)), shape=(welded, welded))
-    label = connected_components(links, directed=False)[1][graph.vertex_node]
+    """Return each vertex's connected component (n,), the largest being 0, and their sizes (c,)."""
+    links = graph.edges[graph.edge_kind == MESH]
+    label = label_components(links, graph.first_point)[graph.vertex_node]
     sizes = np.bincount(label)
     order = np.argsort(-sizes, kind="stable")
     rank = np.empty(len(order), int)

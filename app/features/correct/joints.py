@@ -38,22 +38,11 @@ def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]
 def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dict[str, Any]]:
     """Return what the tree shows of each joint, parents before their children.
 
-    Parameters
-    ----------
-    state : State
-        With a rig that has joints.
-    memo : Memo
-    guess : DeformJoints or None
-        What names and places say; None as long as it is not known.
-
-    Returns
-    -------
-    list of dict
-        "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
-        bones, or nothing, rather than skin), "doubtful" (whether it may be one, in a file without
-        weights), "why" it is so, "carries" (whether it may carry weight), "changed" (whether that
-        was edited), "ours" and "file" (shares of the skin, or None), "locked", "gain" and
-        "radius".
+    These are "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
+    bones, or nothing, rather than skin), "doubtful" (whether it may be one, in a file without
+    weights), "why" it is so, "carries" (whether it may carry weight), "changed" (whether that was
+    edited), "ours" and "file" (shares of the skin, or None), "locked", "gain" and "radius". The
+    guess is None as long as it is not known.
     """
     rig = state.rig
     skeleton = rig.skeleton

@@ -15,7 +15,6 @@ from cutcell_viewers.character import to_scene
 
 from ...document.session import Session
 from ...editing import cross_section_centre, joint_mirror
-from .choices import applied
 from .commands import check_alone, correct
 
 DIGITS = 6
@@ -64,7 +63,8 @@ def mirror_of(session: Session) -> Mirror | None:
             return None
 
     skeleton = state.own_skeleton
-    key = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
+    key = repr((skeleton.joints.tobytes(), skeleton.parents.tolist(), skeleton.names,
+                state.rig.skeleton.deform.tolist(), state.rig.partners))  # fmt: skip
     mirror: Mirror | None = session.memo("mirror", (state.rig.mesh, key), find)
     return mirror
 
@@ -114,13 +114,7 @@ def centre(session: Session) -> None:
 
 
 def moved(session: Session, place: ArrayLike) -> Edits:
-    """Return the edits with the chosen joint somewhere, and its partner mirrored.
-
-    Raises
-    ------
-    CutcellError
-        It cannot be there.
-    """
+    """Return the edits with the chosen joint somewhere, and its partner mirrored."""
     state, joint = session.state, session.state.joint
     places = {joint: np.asarray(place, float)}
     mirror, partner = mirror_of(session), moves_along(session)
@@ -156,12 +150,7 @@ def digits_of(rig: Rig) -> int:
 
 
 class Hand:
-    """Moves joints as the handle in the view is dragged.
-
-    Parameters
-    ----------
-    session : Session
-    """
+    """Moves joints as the handle in the view is dragged."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -170,10 +159,7 @@ class Hand:
     def move(self, message: dict[str, Any]) -> None:
         """Show the character with the chosen joint somewhere; take it when it is let go.
 
-        Parameters
-        ----------
-        message : dict
-            The number of the "joint", its "position" in the scene, and whether it is "done".
+        The message has the number of the "joint", its "position" in the scene, and "done".
         """
         session, state = self._session, self._session.state
         if state.binding is None or int(message["joint"]) != state.joint:
@@ -182,7 +168,7 @@ class Hand:
         place = back[:3, :3] @ np.asarray(message["position"], float) + back[:3, 3]
         try:
             edits = moved(session, place)
-            rig = applied(state.own, edits)
+            rig = edited_rig(state.own, edits)
         except CutcellError as error:
             self.release()
             session.fail(error)

@@ -88,13 +88,7 @@ def with_child(rig: Rig, edits: Edits, name: str) -> tuple[Edits, str]:
 
 
 def without(rig: Rig, edits: Edits, name: str) -> tuple[Edits, str]:
-    """Return edits without a joint, and its parent, which takes over.
-
-    Raises
-    ------
-    ParameterError
-        It is the only one.
-    """
+    """Return edits without a joint, and its parent, which takes over; the only one must stay."""
     skeleton = rig.skeleton
     if len(skeleton.names) < 2:
         raise ParameterError(f'"{name}" is the only joint; at least one has to stay')
@@ -106,7 +100,11 @@ def without(rig: Rig, edits: Edits, name: str) -> tuple[Edits, str]:
 
     one = edits.joints.get(name, JointEdit())
     joints = {
-        key: replace(other, parent=now(other.parent))
+        key: replace(
+            other,
+            parent=now(other.parent),
+            partner=None if other.partner == name else other.partner,
+        )
         for key, other in edits.joints.items()
         if key != name
     }

@@ -3,25 +3,15 @@
 from functools import partial
 from typing import Any
 
-from cutcell.diagnosis.finding import share
 from cutcell.rig import Rig
-from cutcell.runtime.display import count
+from cutcell.runtime.display import count, share
 from cutcell_lab.disagreement import REASONS, Region
 
 from ...document.state import State
 from ...widgets import controls as ui
 from ..compare.choices import FEWEST_VIEWS, NOW
 from ..compare.scene import title_of
-from .results import (
-    called,
-    list_all,
-    look_at,
-    pair_of,
-    region_of,
-    settle,
-    take,
-    unsettled,
-)
+from .results import called, list_all, look_at, pair_of, region_of, settle, take, unsettled
 
 MAX_REGIONS = 12
 """Number of regions that are listed, those that change most."""
@@ -128,10 +118,6 @@ DISAGREEMENT = ui.folded(
     ui.caption(_summary),
     ui.row(_select(0, "Between"), _select(1, "And")),
     ui.listed(_regions),
-    ui.button(
-        "List kept regions again",
-        list_all,
-        visible=lambda state: bool(state.settled),
-    ),
+    ui.button("List kept regions again", list_all, visible=lambda state: bool(state.settled)),
     needed=lambda state: bool(state.region),
 )

@@ -51,9 +51,7 @@ CONTROLS = ui.column(
         ui.switch("path"),
         ui.caption(PATH, visible=lambda s: s.path and s.vertex is None),
         ui.column(
-            ui.switch("starts"),
-            ui.caption(SOURCES, visible=lambda s: s.starts),
-            visible=_one,
+            ui.switch("starts"), ui.caption(SOURCES, visible=lambda s: s.starts), visible=_one
         ),
     ),
     ui.section(

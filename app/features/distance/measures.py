@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.geodesics import path_length
 from cutcell.rig import Rig
 from cutcell_lab.baselines.measured_distance import Measure, MeasuredDistance, mean_error
 from cutcell_viewers.character import to_scene
@@ -39,7 +38,8 @@ def side_by_side(state: State, memo: Memo) -> Description:
     results = {name: state.measured.get(name) for name in names}
     computed = [one for one in results.values() if one is not None]
     converged = results.get("converged")
-    limits = (0.0, max((distance_limits(one.vertices)[1] for one in computed), default=1.0))
+    farthest = max((distance_limits(one.vertices)[1] for one in computed), default=1.0)
+    limits = (0.0, state.scale_end or farthest)
     shared = character(state, memo)
     plain = shared.pop("body")
     actors: dict[str, Actor] = {}
@@ -63,7 +63,7 @@ def side_by_side(state: State, memo: Memo) -> Description:
         if path is not None and len(path):
             tube = memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
             actors[f"path {view}"] = replace(tube, view=view)
-            title += f" · {file_units(path_length(path) / _size(rig), rig)}"
+            title += f" · {file_units(one.vertices[state.vertex], rig)}"
         elif path is not None:
             title += " · no path"
         see = 1.0 if path is None else BODY_OPACITY_WITH_PATH
@@ -101,11 +101,6 @@ def _path(state: State, memo: Memo, name: str, one: MeasuredDistance) -> Any:
         return None
     rig, vertex = state.rig, state.vertex
     return memo(f"path {name}", (rig, one, vertex), lambda: to_scene(rig, one.path_from(vertex)))
-
-
-def _size(rig: Rig) -> float:
-    """Return the longest side in the scene's space, where axes may have changed places."""
-    return float(np.ptp(to_scene(rig, rig.mesh.bounds), axis=0).max())
 
 
 def _voxels(rig: Rig, one: MeasuredDistance, limits: tuple[float, float]) -> Actor:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell.geodesics import path_length, trace_path
+from cutcell.geodesics import trace_path
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.distance_scene import distance_colors, distance_limits, file_units
 from cutcell_viewers.marks import path_tube
@@ -51,7 +51,8 @@ def scene(state: State, memo: Memo) -> Description:
     elif path is not None:
         rig = state.rig
         actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, in_scene(state, path)))
-        swatches += ((MARK, f"shortest path, {file_units(path_length(path), rig)} long"),)
+        length = state.field[state.binding.graph.vertex_node[state.vertex]]
+        swatches += ((MARK, f"shortest path, {file_units(length, rig)}"),)
     if state.wave:
         swatches += ((BODY, "not reached yet"),)
     front = state.front * limits[1] if state.wave else None

@@ -133,9 +133,7 @@ CONTROLS = ui.column(
         ),
         ui.slider("winding_threshold"),
         ui.switch(
-            "orient",
-            margin=(4, 0, 2, 0),
-            visible=lambda s: not s.orient or _has_inverted_faces(s),
+            "orient", margin=(4, 0, 2, 0), visible=lambda s: not s.orient or _has_inverted_faces(s)
         ),
         ui.choice("connectivity", "Paths inside run along", above=4),
         ui.caption(SEARCHED, visible=lambda s: s.connectivity == "any"),

@@ -132,8 +132,7 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
     if state.edge_colors == "depth":
         depth = memo("depth", (graph,), lambda: depth_field(graph))
         most = distance_limits(depth)[1]
-        high = f"{file_units(most, state.rig)} in the file's units"
-        legend = Legend("Depth below the surface", "depth", "0", high)
+        legend = Legend("Depth below the surface", "depth", "0", file_units(most, state.rig))
         return depth, {"shades": "depth"}, legend
     if state.edge_colors == "component":
         colors, count = memo("parts", (graph,), lambda: component_colors(graph))
@@ -191,6 +190,7 @@ def _slice(state: State, memo: Memo) -> Description:
         "index": index,
         "winding_threshold": state.winding_threshold,
         "orient": state.orient,
+        "fill": state.connectivity != 6,
     }
 
     def cast(name: str, **libraries: str) -> RaySlice:

@@ -7,6 +7,7 @@ import numpy as np
 
 from cutcell.graph.sections import PlaneSection
 from cutcell_viewers.description import Actor, Cut, Legend
+from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.section_scene import body_section, field_face, section_lines, winding_face
 from cutcell_viewers.short_names import short_names
 
@@ -23,7 +24,7 @@ def field_section(
         return {}
     rig, graph, tau = state.rig, state.graph, state.winding_threshold
     section = _section(state, memo, cut)
-    text = f"from {short_names(rig.skeleton.names)[state.joint]}: "
+    text = f"from {short_names(rig.skeleton.names)[state.joint]} in {unit_of(rig)}: "
     face = memo(
         "field face",
         (section, tau, field, *limits),

@@ -23,19 +23,10 @@ def plot(
     x: str = "",
     logarithmic: bool = False,
 ) -> dict[str, Any]:
-    """Return a plot of one measure of some settings.
+    """Return a plot of one measure of some settings; those without the measure are left out.
 
-    Parameters
-    ----------
-    settings : sequence of Setting
-        Those without the measure are left out.
-    measure, title : str
-    is_chosen : callable
-        Returns whether the page shows a setting.
-    x : str
-        Choice along the horizontal axis, a number; empty for one place a setting, by its title.
-    logarithmic : bool
-        Whether the vertical axis is; the resolution always is.
+    `x` is the choice along the horizontal axis, a number; empty for one place a setting, by its
+    title. `logarithmic` is of the vertical axis; the resolution's always is.
     """
     measured = [one for one in settings if one.values.get(measure) is not None]
     places = _places(measured, x)

@@ -71,13 +71,7 @@ def choose_values(session: Session, text: str) -> None:
 
 
 def choices_of(option: str, text: str) -> dict[str, Any]:
-    """Return the choices of the page for a value; α also chooses the paper's falloff.
-
-    Raises
-    ------
-    ParameterError
-        There is no value, or there are several.
-    """
+    """Return the choices of the page for a value; α also chooses the paper's falloff."""
     value, *more = parsed_values(text)
     if more:
         raise ParameterError(f"one value is needed, not {len(more) + 1}")

@@ -70,13 +70,7 @@ def recompute(
 
 
 def painted(session: Session, vertices: Vertices, rows: Any) -> Painted:
-    """Return rows (k, j) of vertices (k,), in any order, as the content of a layer.
-
-    Raises
-    ------
-    ParameterError
-        Two joints share a name.
-    """
+    """Return rows (k, j) of vertices (k,), in any order, as the content of a layer."""
     skeleton = session.state.rig.skeleton
     rows = csr_array(rows)
     used = np.unique(rows.indices[rows.data > 0])

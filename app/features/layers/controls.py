@@ -12,10 +12,8 @@ from ...document.session import Session
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from ..brush.choices import selected
-from ..correct import commands as correct
 from . import commands, stack
 
-BASES = {"From file": True, "Computed": False}
 ABOUT = (
     "Layers change the weights below them. Strokes go into the chosen painted layer, or a new one."
 )
@@ -129,15 +127,6 @@ NEW_LAYERS = {
 }
 LAYERS = ui.folded(
     "Layers",
-    ui.choice(
-        "",
-        "Base, below all layers",
-        options=BASES,
-        value=correct.uses_file,
-        act=correct.choose_file,
-        visible=ui.has_weights,
-        disabled=lambda state: state.graph is None,
-    ),
     ui.column(
         ui.Control(
             Rows, act=_choose, shows=_rows, label="Layers",

@@ -30,13 +30,7 @@ CACHED = 4
 
 @dataclass(frozen=True, eq=False)
 class Recomputed:
-    """Weights of many influences for a layer that is computed otherwise than the base.
-
-    Parameters
-    ----------
-    distances : BoneDistances
-    weights : csr_array, shape (n, j), float64
-    """
+    """Weights (n, j) of many influences for a layer that is computed otherwise than the base."""
 
     distances: BoneDistances
     weights: csr_array
@@ -80,12 +74,7 @@ def recomputed(
 
 
 def recompute(
-    bound: Any,
-    reach: Computed,
-    options: dict[str, Any],
-    rig: Rig,
-    layer: Layer,
-    progress: Progress,
+    bound: Any, reach: Computed, options: dict[str, Any], rig: Rig, layer: Layer, progress: Progress
 ) -> Recomputed:
     """Compute the weights of a layer by options of a method, with a `Bound` for the base."""
     distances, method = bound.binding.distances, cutcell.ANIMATION.with_options(**options)

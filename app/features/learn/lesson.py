@@ -21,11 +21,9 @@ KINDS = ("choice", "number", "vertex", "joint", "paint", "act")
 """Ways to answer: an option, a number, a click on the body or on a bone, a painted selection, or
 something that is done in the flat scene or by one of the step's buttons."""
 
-PLOTS = ("falloff", "error")
-"""Plots beside a text: see `plots.py`."""
+PLOTS = ("falloff", "error")  # beside a text: see `plots.py`
 
-SIDE = 4 * 2**20
-"""Bytes of the largest file that is read."""
+SIDE = 4 * 2**20  # bytes of the largest file that is read
 
 
 @dataclass(frozen=True)
@@ -87,6 +85,8 @@ class Step:
         For the speaker.
     plot : str
         Plot beside the text, one of `PLOTS`.
+    captions : dict
+        Captions of methods side by side, by the methods' names.
     """
 
     title: str
@@ -100,6 +100,7 @@ class Step:
     picture: str = ""
     notes: str = ""
     plot: str = ""
+    captions: dict[str, str] = field(default_factory=dict)
 
     def scene(self, is_revealed: bool) -> str:
         """Return the address of the question's scene, or of the answer's."""
@@ -116,6 +117,12 @@ class Step:
         queries = " ".join([self.address, *self.offers.values()])
         return [f"demo {name}" for name in re.findall(r"\brig=([\w-]+)", queries)]
 
+    def shows(self, panel: str) -> bool:
+        """Return whether a panel is the lesson's own or of the step's addresses."""
+        queries = " ".join([self.address, self.reveal, *self.offers.values()])
+        panels = re.findall(r"\bpanel=(\w+)", queries)
+        return panel in ("learn", *panels) or "panel=" not in self.address
+
     @property
     def named(self) -> list[str]:
         """Choices of the page that the text names."""
@@ -127,7 +134,7 @@ class Step:
 
     def to_json(self) -> dict[str, Any]:
         """Return the step as the card needs it."""
-        names = ("title", "question", "text", "sentence", "picture", "notes")
+        names = ("title", "question", "text", "sentence", "picture", "notes", "plot")
         answer = {name: value for name, value in vars(self.answer).items() if value not in ("", [])}
         return {
             **{name: getattr(self, name) for name in names},
@@ -173,16 +180,6 @@ def read(path: Path | str, problems: Problems = lambda query: []) -> Lesson:
 def built_in() -> Lesson:
     """Return the lesson that comes with the page."""
     return read(FOLDER)
-
-
-def written(step: Step) -> str:
-    """Return the text of the file that `read` reads as a step."""
-    head = {f.name: getattr(step, f.name) for f in fields(Step) if f.name not in ("text", "answer")}
-    answer = {name: value for name, value in vars(step.answer).items() if value or name == "kind"}
-    front = {name: value for name, value in head.items() if value}
-    front["answer"] = answer
-    text = yaml.safe_dump(front, sort_keys=False, allow_unicode=True, width=100)
-    return f"---\n{text}---\n{step.text}\n"
 
 
 def _steps(file: Path, problems: Problems) -> Iterator[Step]:
@@ -242,9 +239,9 @@ class _Front:
         if values.get("plot", PLOTS[0]) not in PLOTS:
             raise self._fail("plot", f"must be one of {', '.join(PLOTS)}")
         values["answer"] = self._answer(Answer(**self._checked(raw, Answer, "answer.")))
-        for label, query in values.get("offers", {}).items():
-            if not isinstance(label, str) or not isinstance(query, str):
-                raise self._fail(f"offers.{label}", "must be a label and a part of an address")
+        for key, label in ((k, one) for k in ("offers", "captions") for one in values.get(k, {})):
+            if not isinstance(label, str) or not isinstance(values[key][label], str):
+                raise self._fail(f"{key}.{label}", f"must be two texts. {QUOTES}")
         return Step(**values)
 
     def check_addresses(self, step: Step, problems: Problems) -> None:
@@ -277,16 +274,17 @@ class _Front:
             raise self._fail("answer.kind", f"must be one of {', '.join(KINDS)}")
         if kind == "choice" and len(answer.options) < 2:
             raise self._fail("answer.options", "a choice needs two options or more")
-        if kind == "choice" and expected is not None and expected not in answer.options:
-            raise self._fail("answer.expected", "must be one of the options")
+        if kind == "choice" and expected not in (None, *answer.options):
+            raise self._fail("answer.expected", f"must be one of the options. {QUOTES}")
         if kind in ("number", "paint") and not _fits(expected, "float"):
             raise self._fail("answer.expected", "must be a number")
         return answer
 
 
+QUOTES = "Put Yes, No and numbers in quotes"
 _KINDS = {
-    "str": "a text; put it in quotes", "float": "a number", "list[str]": "a list of texts",
-    "dict[str, str]": "lines of LABEL: ADDRESS", "Answer": "lines of KEY: VALUE",
+    "str": f"a text. {QUOTES}", "float": "a number", "list[str]": f"a list of texts. {QUOTES}",
+    "dict[str, str]": "lines of LABEL: TEXT", "Answer": "lines of KEY: VALUE",
 }  # fmt: skip
 
 

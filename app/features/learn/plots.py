@@ -6,10 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from cutcell.weights.paper_kernel import paper_kernel
+from cutcell.weights.rig_falloff.division import POWER
+from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.short_names import short_names
 
-from ..distance.choices import MEASURES
+from ..distance.choices import CONVERGED, MEASURES
 
+POINTS = 80
 MAX_MARKS = 6
 """Joints of the clicked vertex that are marked, the nearest first."""
 
@@ -24,34 +28,37 @@ def plot_of(state: Any, kind: str) -> dict[str, Any] | None:
 
 
 def _falloff(state: Any) -> dict[str, Any] | None:
-    """Return distances and weights of the clicked vertex.
+    """Return weights over distances at the clicked vertex, relative to those of the nearest joint.
 
-    Under the paper's falloff the joints that it follows lie on one curve, which the browser draws.
+    The curve is that of the falloff alone; the one for animation is also smoothed and cut off.
     """
     binding, vertex = state.binding, state.vertex
     if binding is None or vertex is None:
         return None
-    distance = np.asarray(binding.distances.at(slice(None), vertex)).ravel()
-    nearest = np.argsort(distance, kind="stable")
-    weights, is_paper = binding.weights[vertex], state.falloff == "paper"
-    nearest = nearest[np.isfinite(distance[nearest]) & ((weights[nearest] > 0) | (not is_paper))]
     lattice, names = binding.graph.lattice, short_names(state.rig.skeleton.names)
-    unit = lattice.size * float(np.linalg.norm(state.rig.world[:3, 0]))
+    distance = np.asarray(binding.distances.at(slice(None), vertex)).ravel() * lattice.size
+    nearest = np.argsort(distance, kind="stable")[:MAX_MARKS]
+    nearest = nearest[np.isfinite(distance[nearest])]
+    d, most = float(distance.min()), binding.weights[vertex].max()
+    if not (0 < d < np.inf and most):
+        return None
+    weights = binding.weights[vertex] / most
+    places = np.append(np.linspace(d, max(1.1 * distance[nearest].max(), 2.2 * d), POINTS), 2 * d)
+    size = lattice.diagonal * lattice.size
+    if state.falloff == "paper":
+        pairs = paper_kernel(np.stack([np.full_like(places, d), places]), size, state.alpha)
+        title, curve = "paper's falloff", pairs[:, 1] / pairs[:, 0]
+    else:
+        title, curve = "animation's falloff, before smoothing", (d / places) ** POWER
     return {
         "kind": "falloff",
-        "alpha": state.alpha,
-        "diagonal": lattice.diagonal * unit,
-        "distances": (distance[nearest] * unit).tolist(),
+        "unit": unit_of(state.rig),
+        "curve": {"name": title, "points": np.column_stack([places, curve])[:-1].tolist()},
+        "twice": [2 * d, float(curve[-1])],
         "marks": [
-            {
-                "name": names[joint],
-                "distance": float(distance[joint] * unit),
-                "weight": float(weights[joint]),
-                "chosen": bool(joint == state.joint),
-            }
-            for joint in nearest[:MAX_MARKS].tolist()
+            {"name": names[j], "at": [distance[j], weights[j]], "chosen": j == state.joint}
+            for j in nearest.tolist()
         ],
-        "on_curve": is_paper,
     }
 
 
@@ -66,4 +73,5 @@ def _error(state: Any) -> dict[str, Any] | None:
         "kind": "error",
         "curves": [{"name": name, "points": points} for name, points in curves.items()],
         "at": state.resolution,
+        "reference": f"any angle at R = {CONVERGED}",
     }

@@ -28,11 +28,7 @@ def sliders_of(state: Any, text: str) -> dict[str, dict[str, Any]]:
     """Return the sliders that a text names, for `sentence.js`."""
     names = [name for name in NAME.findall(text) if name in SLIDERS]
     return {
-        name: {
-            "value": getattr(state, name),
-            "label": SLIDERS[name][0],
-            "stops": SLIDERS[name][1],
-        }
+        name: {"value": getattr(state, name), "label": SLIDERS[name][0], "stops": SLIDERS[name][1]}
         for name in names
     }
 

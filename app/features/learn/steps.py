@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.editing import edited_rig
 from cutcell_viewers.camera import Camera
 
 from ...document.address import defaults, from_query
@@ -13,13 +14,16 @@ from ...document.loading import load_demo, motion, revisit
 from ...document.look import set_camera
 from ...document.recording import begin, restoring
 from ...document.session import Session
-from ..brush.choices import selected
+from ..brush.choices import BRUSH, selected
 from ..compare.choices import SINGLE, standard
-from ..compare.scene import title_of, weights_of
-from ..correct.choices import applied, changed_only, changes
+from ..compare.scene import shown_title, weights_of
+from ..correct.choices import changed_only, changes
+from ..select.choices import SELECT
 from .lesson import Step
 from .sliders import slide, sliders_of
 
+TOOLS = BRUSH | SELECT
+"""What a step begins without: a selection, say, is paint of the step before."""
 MAX_ANSWER = 200
 """Letters of an answer."""
 NO_PATH = "a point that no path reaches"
@@ -28,10 +32,11 @@ NO_PATH = "a point that no path reaches"
 
 def watch(session: Session) -> None:
     """Take clicks on the body and on bones for answers where a step asks for them."""
-    follow = session.state.param.watch
+    follow, unused = session.state.param.watch, {n: session.state.param[n].default for n in TOOLS}
     follow(lambda *events: _answer_by_click(session, "vertex"), "vertex")
     follow(lambda *events: _answer_by_click(session, "joint"), "joint")
     follow(lambda *events: _prepare(session), "binding")
+    follow(lambda *events: session.state.param.update(**unused), "step")
 
 
 def go(session: Session, index: int) -> None:
@@ -42,7 +47,8 @@ def go(session: Session, index: int) -> None:
         return
     if state.step < 0 and state.rig is not None:
         camera = None if session.view.at_home else session.view.camera
-        session.before_lesson = session.history, session.history.now, camera
+        tools = {name: getattr(state, name) for name in TOOLS}
+        session.before_lesson = session.history, session.history.now, camera, tools
     step = state.lesson[index]
     demo = step.demo or state.demo
     state.param.update(step=index, demo=demo)  # together: one entry of the browser's history
@@ -50,22 +56,23 @@ def go(session: Session, index: int) -> None:
 
 
 def leave(session: Session) -> None:
-    """End the lesson, and restore the character, the choices and the camera.
+    """End the lesson, and restore the character, the choices, the tools and the camera.
 
     A character that a person opened during the lesson stays, with its choices.
     """
     state, step = session.state, session.state.lesson_step
     before, session.before_lesson = session.before_lesson, None
-    state.param.update(step=-1, staged=False, brush=False)
+    state.param.update(step=-1, staged=False)
     if before is None:
         return
-    history, choices, camera = before
+    history, choices, camera, tools = before
     of_lesson = step.characters if step else []
     if session.character in (choices["character"], *of_lesson):
         session.history = history
         revisit(session, choices)
         if choices["character"] == session.character:
             set_camera(session, camera)
+        state.param.update(**tools)  # a selection counts on its own mesh only
 
 
 def answer(session: Session, value: Any) -> None:
@@ -155,7 +162,7 @@ def _show_open(session: Session, choices: dict[str, Any], arrival: dict[str, Any
         "panel": state.panel, **dict.fromkeys(("moving", "playing", "animating"), False),
         **choices,
     }  # fmt: skip
-    rig = applied(state.own, scene["edits"])
+    rig = edited_rig(state.own, scene["edits"])
     scene |= changes(state, rig, scene["edits"])
     scene |= {**of_character(state, arrival), **motion(session, scene["panel"], arrival)}
     with restoring(session):
@@ -200,13 +207,15 @@ def painted_score(state: Any, step: Step) -> float:
 
 
 def painted_scores(state: Any) -> dict[str, float]:
-    """Return the same for each method that is compared, by its title."""
+    """Return the same for each method that is compared, by its caption."""
     step, painted = state.lesson_step, selected(state)
     if step is None or step.answer.kind != "paint" or painted is None or state.panel != "compare":
         return {}
     tables = {name: weights_of(state, name) for name in state.methods}
     return {
-        title_of(name): _agreement(painted, branch_weights(state, step.answer.joint, table))
+        shown_title(state, name): _agreement(
+            painted, branch_weights(state, step.answer.joint, table)
+        )
         for name, table in tables.items()
         if table is not None
     }

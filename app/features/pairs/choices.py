@@ -27,13 +27,7 @@ TIERS = {
 
 @dataclass(frozen=True, eq=False)
 class OpenedAudit:
-    """An audit, and the folder that it was read from.
-
-    Parameters
-    ----------
-    folder : Path
-    audit : Audit
-    """
+    """An audit, and the folder that it was read from."""
 
     folder: Path
     audit: Audit

@@ -114,8 +114,7 @@ CONTROLS = ui.column(
             top=4,
         ),
         ui.section(
-            "What they are",
-            ui.choice("", options=VERDICTS, value=_verdict, act=actions.overrule),
+            "What they are", ui.choice("", options=VERDICTS, value=_verdict, act=actions.overrule)
         ),
         ui.section("What is kept", ui.caption(threshold_text), ui.caption(_place)),
         visible=lambda state: state.opened is not None,

@@ -130,11 +130,7 @@ REST = ui.button("Rest pose", actions.rest, disabled=lambda s: not s.posed)
 CONTROLS = ui.column(
     ui.intro("Pose bones by hand or play a motion."),
     ui.section(
-        "",
-        ui.caption(_how_to_turn, margin=0),
-        [_angle(axis) for axis in range(3)],
-        REST,
-        top=8,
+        "", ui.caption(_how_to_turn, margin=0), [_angle(axis) for axis in range(3)], REST, top=8
     ),
     ui.section(
         "",

@@ -44,12 +44,7 @@ def motion_part(session: Session) -> dict[str, Any] | None:
 
 
 class Hand:
-    """Slots joints as the rings on the canvas are dragged.
-
-    Parameters
-    ----------
-    session : Session
-    """
+    """Rotates joints as the rings on the canvas are dragged."""
 
     def __init__(self, session: Session) -> None:
         self._state = session.state
@@ -58,11 +53,8 @@ class Hand:
     def turn(self, data: dict[str, Any]) -> None:
         """Turn a joint about one of its local axes.
 
-        Parameters
-        ----------
-        data : dict
-            The number of the "joint", of the "axis", the "degrees" since it was taken hold
-            of, and "begin" where that was just now.
+        The data have the number of the "joint", of the "axis", the "degrees" since it was taken
+        hold of, and "begin" where that was just now.
         """
         state, joint = self._state, int(data["joint"])
         if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):

@@ -105,6 +105,7 @@ SELECTION = ui.folded(
         act=select_where,
         value=lambda s: s.condition,
         placeholder=WHERE,
+        repeats=True,
     ),
     CHANGES,
     ui.switch("table"),

@@ -24,6 +24,7 @@ MOSTLY = 0.5
 def watch(session: Session) -> None:
     """Connect lasso and keys of the view, and put one tool down when another is taken."""
     state, view = session.state, session.view
+    state.param.watch(lambda *events: state.param.update(condition=""), "own")
     view.listen("lasso", lambda message: lasso(session, message))
     view.listen("strongest", lambda message: strongest(session, int(message["vertex"])))
     state.param.watch(lambda *events: _take_lasso(session), "lasso")

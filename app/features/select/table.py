@@ -80,7 +80,7 @@ def table_parts(state: Any) -> dict[str, Any]:
         "columns": [[titles.get(j, "") or names[j], j >= 0] for j in table.columns],
         "rows": [[int(row[0]), *(round(w, 4) for w in row[1:].tolist())] for row in rows],
         "totals": [
-            ["Total", *(round(x, 2) for x in weights.sum(axis=0).tolist())],
+            ["Total", *(round(x, 4) for x in weights.sum(axis=0).tolist())],
             ["Mean", *(round(x, 4) for x in weights.mean(axis=0).tolist())],
         ],
         "order": list(state.table_order),

@@ -37,10 +37,13 @@ def is_wanted(state: State) -> bool:
 
 
 def _image_inputs(state: State) -> tuple[Any, ...] | None:
-    return None if state.rig is None or state.bare else (state.rig.mesh, state.rig.skeleton)
+    rig = state.rig
+    return None if rig is None or state.bare else (rig.mesh, rig.skeleton, rig.partners)
 
 
-def _image(mesh: Any, skeleton: Any, rig: Rig, progress: Progress) -> MirrorImage | str:
+def _image(
+    mesh: Any, skeleton: Any, partners: Any, rig: Rig, progress: Progress
+) -> MirrorImage | str:
     try:
         return mirror_image(rig, progress)
     except (MeshError, SkeletonError) as error:
@@ -60,11 +63,7 @@ def _asymmetry(image: MirrorImage, source: Any, progress: Progress) -> Asymmetry
 
 RESULTS = (
     Derived(
-        "mirror_image",
-        _image_inputs,
-        _image,
-        more=lambda state: (state.rig,),
-        wanted=is_wanted,
+        "mirror_image", _image_inputs, _image, more=lambda state: (state.rig,), wanted=is_wanted
     ),
     Derived(
         "asymmetry",

@@ -25,15 +25,10 @@ graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
 
 @dataclass(frozen=True, eq=False)
 class Influences:
-    """Weights of many influences: sparse, as most of an (n, j) matrix is zero.
+    """Weights of many influences: sparse, as most of an (n, j) matrix is zero; and their options.
 
-    Parameters
-    ----------
-    options : dict
-        The options that turned distances into these weights.
-    weights : csr_array, shape (n, j), float64
-    strongest : dict
-        The few that were kept last, by greatest number and threshold: most changes are of layers.
+    `strongest` has the few that were kept last, by greatest number and threshold: most changes are
+    of layers.
     """
 
     options: dict[str, Any]
@@ -45,11 +40,7 @@ class Influences:
 class Bound:
     """Distances of the open character, and the weights that were computed with them.
 
-    Parameters
-    ----------
-    binding : Binding
-        Without its weights, which are those of `influences`.
-    influences : Influences
+    The weights are those of `influences`; the binding has none.
     """
 
     binding: Binding

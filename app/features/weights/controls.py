@@ -13,7 +13,7 @@ from ..correct.controls import EDITS
 from ..correct.joint_controls import JOINTS
 from ..layers.controls import LAYERS
 from ..select.controls import SELECTION, WEIGHT_SCALE
-from ..symmetry.controls import SYMMETRY
+from ..symmetry.controls import PAIRS, SYMMETRY
 
 SHOWN = {
     "All bones": "mix",
@@ -75,6 +75,7 @@ CONTROLS = ui.column(
     SELECTION,
     LAYERS,
     JOINTS,
+    PAIRS,
     ui.folded(
         "Falloff",
         ui.choice("falloff"),

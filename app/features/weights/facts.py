@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph.winding import winding_number
 from cutcell.runtime.display import shown_name
+from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
@@ -40,9 +41,9 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         most important first), "component", "reached", "reason", "artist" (whether the file has
         weights), "explain" (whether explanations are on), "why" (the explanation for each joint,
         see `explanation_facts`), "overruled" (whether its weights were set by a person) and
-        "offered" (joints whose weight can be set). Lengths are in the file's units. On the panel
-        Compare "method" names the method that was clicked; only the page's own has distances and
-        an explanation.
+        "offered" (joints whose weight can be set). Lengths are in the file's units, whose name is
+        "unit". On the panel Compare "method" names the method that was clicked; only the page's
+        own has distances and an explanation.
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
@@ -79,10 +80,11 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     if method != NOW:
         return facts
     distance = binding.distances.at(slice(None), vertex) * binding.graph.lattice.size
-    near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
+    near = dict.fromkeys([*np.argsort(distance, kind="stable")[:MAX_DISTANCES], state.joint])
     fallback = int(binding.distances.fallback[vertex])
     return {
         **facts,
+        "unit": unit_of(rig),
         "distances": [bone(j, distance=float(distance[j])) for j in near if distance[j] < np.inf],
         "reached": fallback == 0,
         "reason": FALLBACK_REASONS[fallback],
@@ -119,8 +121,8 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        "node", "kind", "position" (in the file's units), "winding", "neighbours" (number, kind,
-        kind of the edge, length in the file's units), "degree", "triangle" (its face and that
+        "node", "kind", "position" (in the file's units, "unit"), "winding", "neighbours" (number,
+        kind, kind of the edge, length in the file's units), "degree", "triangle" (its face and that
         face's corners, of a surface node) and "vertices" (of a mesh node).
     """
     graph, node = state.shown_graph, state.node
@@ -134,6 +136,7 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     face = int(graph.triangle[node])
     return {
         "node": int(node),
+        "unit": unit_of(state.rig),
         "kind": KINDS[kinds[node]],
         "position": position[0].tolist(),
         "winding": memo(

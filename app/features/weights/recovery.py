@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from cutcell.editing import Edits
+from cutcell.editing import Edits, edited_rig
 
 from ...document import recording
 from ...document.method import GRAPH, WEIGHTS, method_of
 from ...document.session import Session
 from ...document.state import State
-from ..correct.choices import applied, changes
+from ..correct.choices import changes
 
 CHAIN = ("built_graph", "bound", "influences", "recomputed", "binding")
 """Results that follow each other from a character to its weights."""
@@ -54,12 +54,12 @@ def go_back(session: Session) -> None:
     state = session.state
     mesh, choices, edits = session.computed or (None, {}, Edits())
     if state.rig is None or mesh is not state.rig.mesh or state.graph is None:
-        choices, edits = method_of(State(), GRAPH), Edits()
+        choices, edits = method_of(State(), GRAPH), state.first_edits
     if method_of(state, tuple(choices)) == choices and state.edits == edits:
         return
     if state.graph is None:
         session.notice = state.message
-    changed = changes(state, applied(state.own, edits), edits)
+    changed = changes(state, edited_rig(state.own, edits), edits)
     recording.withdraw(session, {**choices, **changed})
 
 

@@ -18,7 +18,7 @@ from cutcell.editing import Computed, Edits
 from cutcell.editing.binding_warnings import with_warnings
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
-from cutcell.graph.fingerprint import skeleton_fingerprint
+from cutcell.graph.fingerprint import data_fingerprint
 from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -75,7 +75,7 @@ def _bound_inputs(state: State) -> tuple[Any, ...] | None:
     return (
         _shown_with(state.rig),
         state.built_graph,
-        tuple(skeleton_fingerprint(state.rig.skeleton).values()),
+        tuple(data_fingerprint(state.rig.skeleton).values()),
         state.leaf,
         state.edits.reach,
         replace(cutcell.ANIMATION, falloff=state.falloff).reach_needed,
@@ -167,8 +167,12 @@ def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:
     """Return the weights (n, j) below the layer at a place, by the newest results."""
+    return weights_with(state, replace(state.edits, layers=state.edits.layers[:place]))
+
+
+def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
+    """Return the weights (n, j) that other layers give, by the newest results."""
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
-    edits = replace(state.edits, layers=state.edits.layers[:place])
     base = _base(state.bound, state.influences, few)
     return layered(state.rig, base, edits, state.recomputed).weights
 
@@ -176,18 +180,7 @@ def weights_below(state: State, place: int) -> NDArray[np.float64]:
 def bind_as_chosen(
     state: State, rig: Rig, edits: Edits, graph: CutCellGraph, progress: Progress
 ) -> Binding:
-    """Return the binding of a rig, other than the open one, by the present choices.
-
-    Parameters
-    ----------
-    state : State
-        Or a copy of it.
-    rig : Rig
-    edits : Edits
-    graph : CutCellGraph
-        Of the rig.
-    progress : callable
-    """
+    """Return the binding of a rig, other than the open one, by the choices of a state."""
     options = wide_options(state), falloff_options(state)
     bound = bind_wide(rig, graph, edits.reach, *options, progress)
     recomputed = {
@@ -206,12 +199,7 @@ def _explanation_inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _explanation(
-    rig: Rig,
-    binding: Binding,
-    vertex: int,
-    edits: Edits,
-    joint: Any,
-    progress: Progress,
+    rig: Rig, binding: Binding, vertex: int, edits: Edits, joint: Any, progress: Progress
 ) -> Any:
     return cutcell.explain(
         rig,

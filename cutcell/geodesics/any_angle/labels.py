@@ -6,23 +6,25 @@ rest and are in a separate array: those of a node fit into one cache line.
 
 The queue has buckets (Dial 1969). A bucket is a doubly linked list through the labels themselves:
 a label is inserted and removed without a search, and with two integers of memory. Buckets are
-served in order, and are so narrow that the order within one does not matter. The first label of
-each bucket is in an array `head`, shape (buckets,), int32; `scale` is the number of buckets a unit
-of distance. The last bucket holds everything beyond, until `move_on`.
+served in order. Each is sorted when its turn comes; there are few labels in it, as it is narrow.
+The first label of each bucket is in an array `head`, shape (buckets,), int32; `scale` is the number
+of buckets a unit of distance. The last bucket holds everything beyond, until `move_on`.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numba import config
 from numpy.typing import NDArray
 
+from ...geometry.vectors import TIE
 from ...runtime.compiled import compiled
 
 NO_JOINT, NO_PARENT = -1, -(2**31)
 """The joint and the parent of an unused label."""
+FIRST = -np.inf
 END, LOOSE, SETTLED = -1, -2, -3
 """Values of `after` other than a label: last of its bucket, in no bucket, settled."""
-
 LABEL = np.dtype(
     [
         ("distance", np.float64),
@@ -40,21 +42,28 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
 
     A parent is the label of the node where the path bends last (Theta*), or ~bone.
     """
-    labels = np.empty(nodes * each, LABEL)
+    make = np.recarray if vars(config)["DISABLE_JIT"] else np.empty  # without attributes
+    labels = make(nodes * each, LABEL)
     labels[:] = np.inf, NO_JOINT, LOOSE, 0
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
 
 
 @compiled(inline="always")
 def find_room(labels, each, v, joint):
-    """Return the label of a joint at node v or, if there is none, the farthest label."""
-    existing, farthest, most = -1, v * each, 0.0
+    """Return the label of a joint at node v or, if there is none, the last of the farthest."""
+    existing, farthest = -1, v * each
     for label in range(v * each, v * each + each):
         existing = label if labels[label].joint == joint else existing
-        distance = labels[label].distance
-        farthest = label if distance > most else farthest
-        most = max(distance, most)
+        farther = labels[label].distance - labels[farthest].distance
+        is_last = labels[label].joint > labels[farthest].joint
+        farthest = label if farther > (-TIE if is_last else TIE) else farthest
     return existing if existing >= 0 else farthest
+
+
+@compiled(inline="always")
+def limit_of(labels, slot, joint):
+    """Return the distance that a joint's must be below to replace a label: equals go by joint."""
+    return labels[slot].distance + (TIE if joint <= labels[slot].joint else -TIE)
 
 
 @compiled(inline="always")
@@ -68,17 +77,33 @@ def has_parent(parents, each, v, parent):
 
 @compiled(inline="always")
 def bucket_of(head, scale, distance):
-    """Return the bucket of a distance."""
-    return min(int(distance * scale), len(head) - 1)
+    """Return the bucket of a distance. Bounds are not at whole cells, where distances tie."""
+    return min(int(distance * scale + 0.3), len(head) - 1)
 
 
 @compiled(inline="always")
-def join(head, labels, bucket, label):
-    """Insert a label that is in no bucket."""
-    follower = head[bucket]
-    head[bucket], labels[label].after, labels[label].before = label, follower, ~bucket
-    if follower != END:
-        labels[follower].before = label
+def join(head, labels, bucket, label, distance=FIRST):
+    """Insert a label that is in no bucket, before the first one that is at least as far."""
+    before, after = ~bucket, head[bucket]
+    while after != END and labels[after].distance < distance:
+        before, after = after, labels[after].after
+    labels[label].after, labels[label].before = after, before
+    if before >= 0:
+        labels[before].after = label
+    else:
+        head[bucket] = label
+    if after != END:
+        labels[after].before = label
+
+
+@compiled(inline="always")
+def sort(head, labels, bucket):
+    """Sort the labels of a bucket by distance."""
+    label, head[bucket] = head[bucket], END
+    while label != END:
+        follower = labels[label].after
+        join(head, labels, bucket, label, labels[label].distance)
+        label = follower
 
 
 @compiled(inline="always")

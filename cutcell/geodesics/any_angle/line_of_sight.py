@@ -9,23 +9,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...graph.interior import OUTSIDE
 from ...runtime.compiled import compiled, no_refcount
 from .contraction import Contraction
-from .labels import has_parent
+from .labels import SETTLED
 
 
 def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
     """Return the arrays of a contracted graph that kernels need.
 
     These are the resolution; the first lattice point and surface node that are kept; the positions
-    of kept nodes; and, to step between lattice points, `steps` with the `node` and
-    `number` of the contraction.
+    of kept nodes; to step between lattice points, `steps` with the `node` and `number` of the
+    contraction; and the axes in the order in which positions are compared.
     """
     steps = contraction.steps, contraction.node, contraction.number
     first = graph.first_point, contraction.first_surface
-    return graph.lattice.resolution, *first, contraction.places, steps
+    axes = tuple(graph.lattice.axes.tolist())
+    return graph.lattice.resolution, *first, contraction.places, steps, axes
 
 
 @compiled(inline="always")
@@ -43,6 +45,22 @@ def parent_position(nodes, bones, each, parent, position):
 
 
 @compiled(inline="always")
+def is_preferred(body, bones, labels, each, parent, other, position):
+    """Return which of two equally good parents to take: nearer to the bone, then by position."""
+    _, _, _, nodes, _, axes = body
+    nearer = labels[other].distance if other >= 0 else 0.0
+    nearer -= labels[parent].distance if parent >= 0 else 0.0
+    if abs(nearer) > TIE:
+        return nearer > 0
+    p = parent_position(nodes, bones, each, parent, position)
+    q = parent_position(nodes, bones, each, other, position)
+    for axis in axes:
+        if abs(p[axis] - q[axis]) > TIE:
+            return p[axis] < q[axis]
+    return abs(parent) < abs(other)
+
+
+@compiled(inline="always")
 def straight(p, q):
     """Return the distance between two points."""
     x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]
@@ -50,46 +68,53 @@ def straight(p, q):
 
 
 @compiled(inline="always")
-def has_line_of_sight(body, parents, each, u, v, position, parent, origin):
+def has_line_of_sight(body, labels, parents, each, u, v, position, parent, origin, limit):
     """Return whether the lattice point v, at `position`, has line of sight to a parent at `origin`.
 
-    Its neighbour u has.
+    Its neighbour u has. Settled labels with distances below the limit do not depend on ties.
     """
-    resolution, first_point, _, _, (steps, node, number) = body
-    x, y, z = (
-        int(position[0] * resolution),
-        int(position[1] * resolution),
-        int(position[2] * resolution),
-    )
-    dx = origin[0] * resolution - 0.5 - x
-    dy = origin[1] * resolution - 0.5 - y
-    dz = origin[2] * resolution - 0.5 - z
-    far = max(abs(dx), abs(dy), abs(dz))
+    resolution, first_point, _, _, (steps, node, number), _ = body
+    # From the middle of the cell of v, in cells.
+    x = origin[0] * resolution - int(position[0] * resolution) - 0.5
+    y = origin[1] * resolution - int(position[1] * resolution) - 0.5
+    z = origin[2] * resolution - int(position[2] * resolution) - 0.5
+    far = max(abs(x), abs(y), abs(z))
     point = node[v] - first_point
-    if far > 1:
-        direction = np.rint(dx / far), np.rint(dy / far), np.rint(dz / far)
+    if far > 1 + TIE:
+        half = far * (0.5 + TIE)
+        direction = x * (abs(x) > half), y * (abs(y) > half), z * (abs(z) > half)
         w = _neighbour(steps, point, direction)
-        if far > 2 and w != OUTSIDE and number[first_point + w] == v:  # in the block of v
+        if far > 2 + TIE and w != OUTSIDE and number[first_point + w] == v:  # in the block of v
             w = _neighbour(steps, w, direction)
         if w != OUTSIDE:
             w = number[first_point + w]
-            sees = w == u or (parent >= 0 and w == parent // each)
-            if sees or has_parent(parents, each, w, parent):
+            if w == u or (parent >= 0 and w == parent // each):
                 return True
-    x, y, z = (
-        int(origin[0] * resolution) - x,
-        int(origin[1] * resolution) - y,
-        int(origin[2] * resolution) - z,
-    )
+            for label in range(w * each, w * each + each):
+                if parents[label] == parent and labels[label].distance < limit:
+                    return labels[label].after == SETTLED or _traverse(steps, point, x, y, z)
     return _traverse(steps, point, x, y, z)
 
 
 @compiled(inline="always")
 def _neighbour(steps, point, direction):
-    """Return the lattice point in a direction of -1, 0 or 1 along each axis."""
-    for axis in range(3):
-        point = _step(steps, point, axis, direction[axis])
-    return point
+    """Return the lattice point a step along each axis; OUTSIDE if no order of steps leads to it."""
+    x, y, z = direction
+    neighbour = _step(steps, _step(steps, _step(steps, point, 0, x), 1, y), 2, z)
+    return neighbour if neighbour != OUTSIDE else _by_another_order(steps, point, direction)
+
+
+@no_refcount
+def _by_another_order(steps, point, direction):
+    for first in range(3):
+        for turn in range(1, 3):
+            neighbour = point
+            for k in range(3):
+                axis = (first + k * turn) % 3
+                neighbour = _step(steps, neighbour, axis, direction[axis])
+            if neighbour != OUTSIDE:
+                return neighbour
+    return OUTSIDE
 
 
 @compiled(inline="always")
@@ -102,22 +127,18 @@ def _step(steps, point, axis, direction):
 
 @no_refcount
 def _traverse(steps, point, x, y, z):
-    """Return whether edges join all cells on a line of (x, y, z) cells (Amanatides & Woo 1987)."""
-    dx, dy, dz = abs(x), abs(y), abs(z)
+    """Return whether edges join all cells on the line of (x, y, z) cells from a lattice point.
+
+    Amanatides & Woo 1987.
+    """
+    dx, dy, dz = max(abs(x), TIE), max(abs(y), TIE), max(abs(z), TIE)
     # Where the line next leaves its cell along each axis, as a fraction of its length.
-    tx = 0.5 / dx if dx else np.inf
-    ty = 0.5 / dy if dy else np.inf
-    tz = 0.5 / dz if dz else np.inf
-    for _ in range(dx + dy + dz):
-        if tx <= ty and tx <= tz:
-            point = _step(steps, point, 0, x)
-            tx += 1 / dx
-        elif ty <= tz:
-            point = _step(steps, point, 1, y)
-            ty += 1 / dy
-        else:
-            point = _step(steps, point, 2, z)
-            tz += 1 / dz
-        if point == OUTSIDE:
-            return False
-    return True
+    tx, ty, tz = 0.5 / dx, 0.5 / dy, 0.5 / dz
+    while point != OUTSIDE:
+        t = min(tx, ty, tz) + TIE
+        if t >= 1:
+            return True
+        # Through an edge or a corner of the cell it leaves along several.
+        point = _neighbour(steps, point, (x * (tx <= t), y * (ty <= t), z * (tz <= t)))
+        tx, ty, tz = tx + (tx <= t) / dx, ty + (ty <= t) / dy, tz + (tz <= t) / dz
+    return False

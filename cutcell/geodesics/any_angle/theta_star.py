@@ -21,14 +21,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...runtime.compiled import no_refcount
 from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads, parts, threads
-from ..bones import TIE, Bones, Sources
+from ..bones import Bones, Sources
 from .contraction import Contraction
 from .labels import (
     END,
+    FIRST,
     NO_JOINT,
     SETTLED,
     bucket_of,
@@ -36,9 +38,11 @@ from .labels import (
     has_parent,
     join,
     leave,
+    limit_of,
     move_on,
+    sort,
 )
-from .line_of_sight import body_of, has_line_of_sight, parent_position, straight
+from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
 from .wavefront import Ranking, Wavefront, begin, enqueue, partition_sources, rank_bones
 
 NEAR = 2
@@ -72,7 +76,7 @@ def any_angle_paths(
 
     Shapes: targets (t,), least (K,); returns (j, t).
     """
-    ranking = _ranked(contraction, bones, sources)
+    ranking = rank_bones(graph, contraction, bones, sources)
     count = len(ranking.joints)
     if nearest is not None and least is not None:
         groups = [np.ones(count, np.bool_)]
@@ -113,17 +117,12 @@ def least_distances(
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute the distance of the nearest joint to each kept node, shape (K,)."""
-    ranking = _ranked(contraction, bones, sources)
+    ranking = rank_bones(graph, contraction, bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(contraction.node), every, 1)
     body = body_of(graph, contraction)
     _propagate(body, contraction, ranking, front, np.inf, lambda done: progress("distances", done))
     return front.least
-
-
-def _ranked(contraction: Contraction, bones: Bones, sources: Sources) -> Ranking:
-    number = contraction.number[sources.node]
-    return rank_bones(bones, Sources(number, sources.bone, sources.distance))
 
 
 def _propagate(
@@ -142,7 +141,7 @@ def _propagate(
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     graph = adjacency, body, ranking.table, within
-    arguments = *graph, front.each, labels, front.parents, front.least, head, scale, ahead
+    arguments = *graph, front.each, labels, front.parents, front.least, (head, scale), ahead
     last, origin, settled = len(head) - 1, 0.0, 0
     bucket = 0
     while True:
@@ -161,7 +160,7 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
 
     A contracted node has line of sight to the parents of its representative.
     """
-    _, _, _, places, (_, node, number) = body
+    _, _, _, places, (_, node, number), _ = body
     for t in range(len(targets)):
         target, v = targets[t], number[targets[t]]
         position = nodes[target, 0], nodes[target, 1], nodes[target, 2]
@@ -177,41 +176,30 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
 
 def _leave_out(within: float, near: float, distance: NDArray[np.float64]) -> None:
     """Set distances (j, t) beyond `within` times the least, at least `near`, to infinity."""
-    distance[distance > within * np.maximum(distance.min(axis=0), near)] = np.inf
+    distance[distance > within * np.maximum(distance.min(axis=0), near) + TIE] = np.inf
 
 
 @no_refcount
 def _settle(
-    adjacency,
-    body,
-    bones,
-    within,
-    each,
-    labels,
-    parents,
-    least,
-    head,
-    scale,
-    ahead,
-    origin,
-    bucket,
-    most,
+    adjacency, body, bones, within, each, labels, parents, least, queue, ahead, origin, bucket, most
 ):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
     `each` is the number of labels a node has; `ahead` is a workspace for a node's edges.
     Returns the bucket to continue with, and how many labels have been settled.
     """
-    indptr, indices = adjacency
-    resolution, first_point, first_surface, nodes, _ = body
-    settled = 0
+    (indptr, indices), (head, scale) = adjacency, queue
+    resolution, first_point, first_surface, nodes, _, _ = body
+    settled, time = 0, 0.0
     while bucket < len(head) - 1 and settled < most:
+        sort(head, labels, bucket)
         while head[bucket] != END and settled < most:
             settled += 1
             label = head[bucket]
             leave(head, labels, label)
             labels[label].after = SETTLED
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
+            time = max(time, labels[label].distance)
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
             # Most neighbours have this parent already. The others are listed without a branch,
             # which would be mispredicted.
@@ -223,38 +211,44 @@ def _settle(
                 e = ahead[k]
                 v = indices[e]
                 slot = find_room(labels, each, v, joint)
-                if labels[slot].after == SETTLED:
+                # Of labels at equal distances none improves another: any may be settled first.
+                is_tied = abs(labels[slot].distance - time) <= TIE
+                if labels[slot].after == SETTLED or is_tied:
                     continue
-                # Equally near joints: the first by position stays.
-                limit = labels[slot].distance
-                if labels[slot].joint != joint:
-                    limit *= 1 + TIE if joint < labels[slot].joint else 1 - TIE
+                limit, other = limit_of(labels, slot, joint), parents[slot]
+                is_same = labels[slot].joint == joint
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
                 if reached >= limit:
                     continue  # a path by way of u is no shorter
-                if reached > within * max(least[v], ON_BONE / resolution):
+                if reached > within * max(least[v], ON_BONE / resolution) + TIE:
                     continue
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
                 if u < first_point:
                     sees = False
                 elif v < first_point:
-                    sees = step * resolution < NEAR
+                    sees = step * resolution < NEAR - TIE
                 elif v >= first_surface:
                     sees = u < first_surface
                 else:
                     sees = has_line_of_sight(
-                        body, parents, each, u, v, position, grandparent, start
+                        body, labels, parents, each, u, v, position, grandparent, start, time - TIE
                     )
                 if not sees:
                     reached, parent = labels[label].distance + step, label
                     if reached >= limit:
                         continue
+                is_tie = is_same and reached >= limit - 2 * TIE
+                if is_tie and not is_preferred(body, bones, labels, each, parent, other, position):
+                    continue
                 leave(head, labels, slot)
                 labels[slot].joint, parents[slot] = joint, parent
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
-                join(head, labels, max(bucket_of(head, scale, reached - origin), bucket), slot)
+                # One that is nearer than what is settled has its turn after its equals.
+                turn = max(reached, time + 2 * TIE)
+                later = max(bucket_of(head, scale, turn - origin), bucket)
+                join(head, labels, later, slot, turn if later == bucket else FIRST)
         bucket += head[bucket] == END
     return bucket, settled

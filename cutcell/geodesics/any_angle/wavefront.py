@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ...geometry.vectors import TIE
+from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
-from .labels import NO_JOINT, bucket_of, find_room, join, no_labels
+from .contraction import Contraction
+from .labels import NO_JOINT, bucket_of, find_room, join, limit_of, no_labels
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +61,11 @@ class Wavefront:
     least: NDArray[np.float64]
 
 
-def rank_bones(bones: Bones, sources: Sources) -> Ranking:
+def rank_bones(
+    graph: CutCellGraph, contraction: Contraction, bones: Bones, sources: Sources
+) -> Ranking:
     """Order bones, joints and sources by position."""
-    order = np.lexsort(np.concatenate([bones.start, bones.end], axis=1).T[::-1])
+    order = graph.lattice.order(bones.start, bones.end)
     start, along = bones.start[order], (bones.end - bones.start)[order]
     squared = (along**2).sum(axis=1)
     inverse = np.divide(1, squared, out=np.zeros(len(order)), where=squared > 0)
@@ -74,7 +79,7 @@ def rank_bones(bones: Bones, sources: Sources) -> Ranking:
         start[first[by_bone]],
         np.column_stack([start, along, inverse]),
         rank,
-        Sources(sources.node[ranked], row[ranked], sources.distance[ranked]),
+        Sources(contraction.number[sources.node[ranked]], row[ranked], sources.distance[ranked]),
     )
 
 
@@ -84,7 +89,7 @@ def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     Each joint in turn goes to the group that its nearest predecessor is not in. A single joint is
     one group.
     """
-    distance = cdist(places, places)
+    distance = np.rint(cdist(places, places) / TIE)
     odd = np.zeros(len(places), np.bool_)
     for k in range(1, len(places)):
         odd[k] = not odd[distance[k, :k].argmin()]
@@ -111,12 +116,12 @@ def begin(
 
 @compiled
 def _enter_sources(labels, parents, least, each, group, rank, node, bone, distance):
-    for s in range(len(node)):
+    for s in range(len(node) - 1, -1, -1):  # of equally near bones the first one stays
         joint, parent = rank[bone[s]], ~bone[s]
         if not group[joint]:
             continue
         label = find_room(labels, each, node[s], joint)
-        if distance[s] < labels[label].distance:
+        if distance[s] < limit_of(labels, label, joint):
             labels[label].joint, parents[label] = joint, parent
             labels[label].distance = distance[s]
             least[node[s]] = min(least[node[s]], distance[s])

@@ -271,13 +271,13 @@ def _inferred_tree(
     if len(members) < 3:
         return parents
     # Sorted by position, so that ties do not depend on how a file numbers joints.
-    members = members[np.lexsort(joints[members].T[::-1])]
+    members = members[probe.lattice.order(joints[members])]
     places = joints[members]
     away = places[None] - places[:, None]
     length = np.linalg.norm(away, axis=2)
     air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
-    # Coincident joints cost almost nothing; zero would mean no edge.
-    cost = np.maximum(length**HOP * (1 + THROUGH_AIR * air), 1e-12)
+    # Whole numbers, whose sums are exact. Coincident joints cost 1, as zero would mean no edge.
+    cost = np.maximum(np.rint(length**HOP * (1 + THROUGH_AIR * air) * 1e12), 1)
     before = dijkstra(cost, return_predecessors=True)[1]
     unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
     best, least = -1, np.inf

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from ...geometry.triangles import areas
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig import Skeleton
 from ..bones import Bones
@@ -162,8 +163,7 @@ def aim_leaf_bones(
     points = graph.nodes[: len(nearest)]
     area = np.bincount(graph.faces.ravel(), np.repeat(areas(points[graph.faces]), 3), len(points))
     leaf, vertex = np.isfinite(distance).nonzero()
-    to_leaf = distance[leaf, vertex]
-    share = np.divide(nearest[vertex], to_leaf, out=np.ones(len(leaf)), where=to_leaf > 0)
+    share = np.maximum(nearest[vertex], TIE) / np.maximum(distance[leaf, vertex], TIE)
     part = area[vertex] * share**REGION_POWER
     total = np.bincount(leaf, part, len(distance))
     moments = [np.bincount(leaf, part * points[vertex, axis], len(distance)) for axis in range(3)]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.segments import closest_on_segment
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ..nearest import NodeTree
 
@@ -38,7 +39,7 @@ class BodyProbe:
 
     def __init__(self, graph: CutCellGraph, tree: NodeTree) -> None:
         self._tree = tree
-        self.resolution = graph.lattice.resolution
+        self.lattice, self.resolution = graph.lattice, graph.lattice.resolution
         interior = graph.interior
         column = np.repeat(np.arange(self.resolution**2), np.diff(interior.start))
         # Stretches of lattice points inside, numbered over the whole lattice.
@@ -47,7 +48,7 @@ class BodyProbe:
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return for each point (..., 3) whether its lattice cell's centre is inside."""
-        cell = np.floor(np.asarray(points, np.float64) * self.resolution)
+        cell = np.floor((np.asarray(points, np.float64) + TIE) * self.resolution)
         in_cube = np.asarray(((cell >= 0) & (cell < self.resolution)).all(axis=-1))
         x, y, z = np.moveaxis(np.where(in_cube[..., None], cell, 0).astype(np.int64), -1, 0)
         place = (x * self.resolution + y) * self.resolution + z

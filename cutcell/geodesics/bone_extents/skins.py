@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from ...graph import CutCellGraph
 from ...method import MAX_RESOLUTION, Method
 from ...rig import Rig, Skeleton
 
@@ -67,12 +68,14 @@ def characters(
         )
 
 
-def method_per_character(rig: Rig, method: Method) -> Method:
+def method_per_character(rig: Rig, method: Method, graph: CutCellGraph | None = None) -> Method:
     """Return a method whose resolution counts along the largest of several characters in a file.
 
-    Each is then bound as if it were alone. Characters share no joint.
+    Each is then bound as if it were alone. Characters share no joint. A graph that was built at
+    the method's own resolution stays in use.
     """
-    if rig.allowed is None or method.falloff != "rig":
+    is_built = graph is not None and graph.lattice.resolution == method.resolution
+    if rig.allowed is None or method.falloff != "rig" or is_built:
         return method
     joints = characters(rig.skeleton, share_a_skin(rig.allowed, len(rig.skeleton.joints)))
     parts = [rig.mesh.vertices[rig.allowed[:, one].any(axis=1)] for one, _ in joints]

@@ -30,6 +30,10 @@ SEEN = 0.02
 """The least share of rays that escape from a side that is seen from outside."""
 CLEARLY = 3.0
 """The outer side must see the outside by this factor more than the other."""
+HIDDEN = 0.05
+"""The wall of a void sees the outside by less than this share of rays, through leaks."""
+HOLLOW = 0.1
+"""A body is hollow if its voids have this part of its volume; a closed mouth has 0.001."""
 MOSTLY = 0.75
 """A mesh is inverted as a whole if this share of the decidable area is."""
 
@@ -55,7 +59,7 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
     """
     vertices, index = weld(Lattice.around(mesh, 2).to_unit(mesh.vertices))
     faces = index[mesh.faces]
-    return find_inverted(vertices, faces, find_edges(faces).partner)
+    return find_inverted(vertices, faces, find_edges(faces).partner)[0]
 
 
 def find_inverted(
@@ -63,20 +67,20 @@ def find_inverted(
     faces: NDArray[np.int32],
     partner: NDArray[np.int32],
     report: Tell = lambda done: None,
-) -> NDArray[np.bool_]:
-    """Find the welded faces that are inside out.
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Find the welded faces that are inside out, and those around the voids of a hollow body.
 
-    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,); returns (m,).
+    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,); returns (m,) twice.
     """
     a, b, c = faces.T
     proper = (a != b) & (b != c) & (c != a)
     if proper.all():
         return _find_inverted(vertices, faces, partner, report)
-    inverted = np.zeros(len(faces), np.bool_)
+    result = np.zeros((2, len(faces)), np.bool_)
     if proper.any():
         faces = faces[proper]
-        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner, report)
-    return inverted
+        result[:, proper] = _find_inverted(vertices, faces, find_edges(faces).partner, report)
+    return result[0], result[1]
 
 
 def _find_inverted(
@@ -84,24 +88,27 @@ def _find_inverted(
     faces: NDArray[np.int32],
     partner: NDArray[np.int32],
     report: Tell,
-) -> NDArray[np.bool_]:
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     areas, volumes = measure_faces(vertices, faces)
     flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
     faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
-    area, volume = np.bincount(patch, areas), np.bincount(patch, volumes)
+    area = np.bincount(patch, areas)
     holes, missing = _cap(vertices, rims, of_rim, len(area))
     is_sheet = holes >= OPEN * area
-    doubtful = ~is_sheet & (volume + missing < -FLAT * area**1.5)
+    volume = np.bincount(patch, volumes) + missing
+    doubtful = ~is_sheet & (volume < -FLAT * area**1.5)
     if area[is_sheet].sum() > area.sum() / 2:
         doubtful |= is_sheet  # in a soup nothing else decides
     if not doubtful.any():
-        return flips
+        return flips, np.zeros_like(flips)
     front, back = exposure(vertices, faces, patch, doubtful, report)
     wrong = (back >= SEEN) & (back >= CLEARLY * front)
     right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
     if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():
         wrong = ~right  # undecidable patches were inverted with the rest
-    return flips ^ wrong[patch]
+    is_void = doubtful & ~is_sheet & ~wrong & (np.maximum(front, back) < HIDDEN)
+    is_void &= -volume[is_void].sum() >= HOLLOW * np.abs(volume[~is_void & ~is_sheet]).sum()
+    return flips ^ wrong[patch], is_void[patch]
 
 
 def _cap(

@@ -6,10 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ...geometry.triangles import normals
+from ...geometry.triangles import label_components, normals
 from ...geometry.vectors import between, dot, length, triangle_normal
 from ...runtime.compiled import compiled
 
@@ -146,10 +144,7 @@ def _split(
 ) -> NDArray[np.int32]:
     """Return the patch of each face: faces connected across consistent edges."""
     half_edge = np.flatnonzero((partner != NONE) & _is_consistent(faces, partner, flips))
-    pairs = half_edge // 3, partner[half_edge] // 3
-    graph = coo_array((np.ones(len(half_edge), np.bool_), pairs), shape=(len(faces),) * 2)
-    patch: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return patch
+    return label_components(np.stack([half_edge, partner[half_edge]], axis=1) // 3, len(faces))
 
 
 def _rims(

@@ -17,7 +17,7 @@ from ...rig import TriangleMesh
 from ...rig.checks import check_choice, check_integer, check_number
 from ..lattice import Lattice
 from ..libraries import CASTERS, fast_winding_numbers
-from ..rays import AXES, cast_rays, points_on_rays
+from ..rays import AXES, cast_rays, part_at_contacts, points_on_rays
 from ..segments import divide_rays
 from ..surface import prepare_surface
 from ..winding.exact import WindingNumbers
@@ -86,6 +86,7 @@ def slice_rays(
     index: int,
     winding_threshold: float = 0.5,
     orient: bool = True,
+    fill: bool = True,
     rays: str = "raster",
     winding: str = "exact",
 ) -> RaySlice:
@@ -105,6 +106,8 @@ def slice_rays(
     winding_threshold : float
         tau: least winding number of segments that are kept.
     orient : bool
+    fill : bool
+        Whether hollow bodies are full, as by `build_graph` unless the connectivity is 6.
     rays : {"raster", "open3d", "embree"}
     winding : {"exact", "fast"}
         As of `build_graph`.
@@ -134,9 +137,10 @@ def slice_rays(
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 
-    surface = prepare_surface(mesh, resolution, orient)
+    surface = prepare_surface(mesh, resolution, orient, fill)
     caster = CASTERS.get(rays, cast_rays)
     hits = caster(surface.vertices, surface.faces, resolution, axis)
+    hits = part_at_contacts(hits, surface.part)
     numbers = np.arange(resolution)
     first = normal == AXES[axis][0]
     numbers = index * resolution + numbers if first else numbers * resolution + index

@@ -28,6 +28,8 @@ from ..lattice import Lattice
 from ..rays import column_span, edge_height, height_between
 from .boundary import find_boundary
 
+MAX_CELLS = 16
+"""Cells of the grid that a face is listed in, on average: those of a fan cover most of it."""
 INFINITESIMAL = 1e-150
 """Smaller than any distance, yet its product with one does not underflow."""
 TINY = 1e-100
@@ -98,10 +100,14 @@ def _bin_faces(vertices, faces):
     """List for each cell of a grid over (x, y) the faces whose projection may touch it."""
     cells = int(np.clip(np.sqrt(len(faces)), 1, 512))
     corners = vertices[faces][:, :, :2]
-    low = np.clip((corners.min(axis=1) * cells).astype(np.int64), 0, cells - 1)
-    high = np.clip((corners.max(axis=1) * cells).astype(np.int64), 0, cells - 1)
-    size = high - low + 1
-    count = size.prod(axis=1)
+    extent = np.stack([corners.min(axis=1), corners.max(axis=1)])
+    while True:
+        low, high = np.clip((extent * cells).astype(np.int64), 0, cells - 1)
+        size = high - low + 1
+        count = size.prod(axis=1)
+        if count.sum() <= MAX_CELLS * len(faces):
+            break
+        cells //= 2  # a cell is then listed with as many of the faces that cover many
     face = np.repeat(np.arange(len(faces), dtype=np.int32), count)
     k = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
     cell = (low[face, 0] + k // size[face, 1]) * cells + low[face, 1] + k % size[face, 1]

@@ -38,7 +38,8 @@ MAX_CANDIDATES = 256
 class BoundSkin:
     """The joints of a skin, as they were bound and as their nodes are."""
 
-    inverse: NDArray[np.float64]  # (j, 4, 4): inverse bind matrices; `mend` replaces some
+    inverse: NDArray[np.float64]
+    """(j, 4, 4): inverse bind matrices, NaN where there is none; `mend` replaces some."""
     shares: NDArray[np.float64]  # (j,): the sum of the vertices' weights on each joint
     world: NDArray[np.float64]  # (j, 4, 4): of the joints' nodes
     relative: NDArray[np.float64]
@@ -66,7 +67,7 @@ class BoundSkin:
         distance = np.linalg.norm(self.frames[:, :3, 3], axis=1)
         self.is_at_origin = self.is_solvable & (distance <= ORIGIN * size)
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
-        self.is_held = self.shares > 0
+        self.is_held = (self.shares > 0) & ~np.isnan(self.inverse).all(axis=(1, 2))
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
         shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
         trusted = self.is_held & shows
@@ -132,7 +133,8 @@ def mend(skins: Sequence[BoundSkin]) -> None:
 def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
     """Mend a skin of a size; `shifts` are those of all trusted joints, in sizes."""
     below = _first_below(skin)
-    far = _far_limit(skin, size, shifts)
+    shift = float(shifts.max())
+    far = _far_limit(skin, size, shift)
     is_good = skin.is_held | ~skin.is_blank
     has_children = np.zeros(len(is_good), bool)
     has_children[[parent for parent in skin.parents if parent >= 0]] = True
@@ -148,10 +150,9 @@ def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
             assert skin.stands is not None
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
-        tolerance = NEAR if is_below_good else max(SOFT, 2 * float(shifts.max()))
-        if skin.is_solvable[k] and not _contradicts(
-            skin, k, frame, size, shifts, tolerance if skin.is_blank[k] else far
-        ):
+        tolerance = NEAR if is_below_good else max(SOFT, 2 * shift)
+        tolerance = tolerance if skin.is_blank[k] else far
+        if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shift, tolerance):
             continue
         if not is_below_good and skin.is_at_origin[k] and (parent >= 0 or has_children[k]):
             skin.stays[k] = skin.frames[k, :3, 3].copy()
@@ -173,9 +174,9 @@ def _first_below(skin: BoundSkin) -> list[int]:
     return first
 
 
-def _far_limit(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> float:
+def _far_limit(skin: BoundSkin, size: float, shift: float) -> float:
     """Return the distance beyond which a stored matrix of a joint is wrong."""
-    limit = max(FAR, FARTHER * float(shifts.max()))
+    limit = max(FAR, FARTHER * shift)
     stored = np.flatnonzero(~skin.is_held & ~skin.is_blank)
     if skin.stands is None or not len(stored):
         return limit
@@ -186,12 +187,7 @@ def _far_limit(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> flo
 
 
 def _contradicts(
-    skin: BoundSkin,
-    k: int,
-    frame: NDArray[np.float64],
-    size: float,
-    shifts: NDArray[np.float64],
-    tolerance: float,
+    skin: BoundSkin, k: int, frame: NDArray, size: float, shift: float, tolerance: float
 ) -> bool:
     """Return whether a joint's matrix is not what its node says, `frame` (4, 4), nor a pose."""
     bound = skin.frames[k]
@@ -203,7 +199,7 @@ def _contradicts(
     change = np.linalg.solve(frame[:3, :3], bound[:3, :3])
     stretch = np.abs(np.linalg.svd(change, compute_uv=False) - 1).max()
     turn = np.abs(change - np.eye(3)).max()
-    return bool(stretch > STRETCH or (turn > TURN and shifts.max() <= ORIGIN))
+    return bool(stretch > STRETCH or (turn > TURN and shift <= ORIGIN))
 
 
 @np.errstate(over="ignore")  # the box may have no extent
@@ -236,8 +232,7 @@ def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.f
     near = [np.exp(-apart(matrices, matrices[k], corners) / SOFT) for k in heaviest.tolist()]
     scores = np.array([(shares * one).sum() for one in near])
     first = int(np.flatnonzero(scores >= scores.max() * (1 - NEAR))[0])
-    chosen: NDArray[np.float64] = matrices[heaviest[first]]
-    return chosen
+    return matrices[heaviest[first]]
 
 
 def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.float64]:
@@ -248,8 +243,7 @@ def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.flo
     moved, reference = (matrices @ box)[:, :3], (other @ box)[:3]
     sizes = np.linalg.norm(moved[..., :3], axis=(1, 2))
     sizes = np.maximum(np.maximum(sizes, np.linalg.norm(reference[:, :3])), np.finfo(float).tiny)
-    distances: NDArray[np.float64] = np.linalg.norm(moved - reference, axis=(1, 2)) / sizes
-    return distances
+    return np.linalg.norm(moved - reference, axis=(1, 2)) / sizes
 
 
 def invertible(matrices: NDArray) -> NDArray[np.bool_]:
@@ -262,5 +256,4 @@ def invertible(matrices: NDArray) -> NDArray[np.bool_]:
 
 
 def _moved(points: NDArray, matrix: NDArray) -> NDArray[np.float64]:
-    moved: NDArray[np.float64] = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return moved
+    return points @ matrix[:3, :3].T + matrix[:3, 3]

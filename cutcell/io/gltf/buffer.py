@@ -201,10 +201,8 @@ def accessors_in(value: Any) -> Iterator[int]:
     for owner in _objects_in(value):
         named = [owner.get(key) for key in ACCESSOR_KEYS]
         targets = owner.get("targets")
-        for attributes in [
-            owner.get("attributes"),
-            *(targets if isinstance(targets, list) else ()),
-        ]:
+        targets = targets if isinstance(targets, list) else []
+        for attributes in (owner.get("attributes"), *targets):
             named += attributes.values() if isinstance(attributes, dict) else ()
         yield from (number for number in named if type(number) is int)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import math
 import re
 import struct
 from collections.abc import Iterator
@@ -20,7 +21,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from ...errors import CutcellError, FileError
-from ..files import HALVES, Allowance, one_line, read_bytes, whole_characters
+from ..files import HALVES, Allowance, one_line, read_bytes, regular_file, whole_characters
 
 MAGIC = b"glTF"
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
@@ -51,7 +52,8 @@ class Document:
 
     def allow(self) -> None:
         """Reset the memory budget of reading by the present size."""
-        self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
+        sizes = {id(buffer): len(buffer) for buffer in self.buffers}  # some may be the same
+        self.allowance = Allowance(self.size + sum(sizes.values()))
 
     def forget(self) -> None:
         """Clear read caches: what was checked or decoded, by the number of its accessor or mesh."""
@@ -153,8 +155,13 @@ def read_document(path: Path) -> Document:
     if not str(asset["version"]).startswith("2."):
         raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
     files: dict[str, bytes] = {}
-    for i, buffer in enumerate(document.items("buffers")):
-        document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
+    buffers = document.items("buffers")
+    lengths = [whole(one, "byteLength", f"buffers[{i}]") for i, one in enumerate(buffers)]
+    document.buffers = [b""] * len(buffers)
+    for i in sorted(range(len(buffers)), key=lambda i: -lengths[i]):
+        document.buffers[i] = _buffer_bytes(path, buffers[i], i, binary, files)
+    for image in document.items("images"):  # saving copies them
+        beside(path, str(image.get("uri", "data:")))
     document.allow()
     return document
 
@@ -186,7 +193,8 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
     """Return the JSON object in a text, and warnings about it."""
     warnings = []
     try:
-        document = json.loads(text.decode("utf-8-sig").rstrip("\0"), parse_constant=_no_constant)
+        decoded = text.decode("utf-8-sig").rstrip("\0")
+        document = json.loads(decoded, parse_float=_number, parse_constant=_number)
         if SURROGATE.search(text):
             whole = with_whole_names(document)
             warnings += [HALVES] if whole != document else []
@@ -198,36 +206,37 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
     return document, warnings
 
 
-def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is not a JSON number")
+def _number(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:40]} is not a JSON number")
+    return value
 
 
 def _buffer_bytes(
     path: Path, buffer: dict[str, Any], i: int, binary: bytes | None, files: dict[str, bytes]
 ) -> bytes:
-    """Return the bytes of a buffer; `files` keeps what was read, for others that want the same."""
+    """Return the bytes of a buffer; `files` keeps what was read, for those that want less of it."""
     user = f"buffers[{i}]"
-    length = whole(buffer, "byteLength", user)
     if any(isinstance(x, dict) and x.get("fallback") is True for x in extensions(buffer).values()):
         return b""  # it is empty: its buffer views are compressed, in another buffer
-    uri = buffer.get("uri")
+    uri, length = buffer.get("uri"), buffer["byteLength"]
     if uri is None:
         if i != 0 or binary is None:
             raise FileError(f"{user} has no data: neither a uri nor a binary chunk")
-        data = binary
+        data = binary[:length]
     else:
-        if not isinstance(uri, str):
-            raise FileError(f'{user}: "uri" must be text')
-        if uri not in files:
-            files[uri] = read_uri(path, uri, user)
-        data = files[uri]
+        key = str(uri) if str(uri).startswith("data:") else str(beside(path, str(uri)))
+        if key not in files:
+            files[key] = read_uri(path, uri, user, max(length, 1))
+        data = files[key]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
-    return data[:length]
+    return data
 
 
-def read_uri(path: Path, uri: Any, user: str) -> bytes:
-    """Return the bytes behind a data URI or a relative file name."""
+def read_uri(path: Path, uri: Any, user: str, most: int | None = None) -> bytes:
+    """Return the bytes behind a data URI, or the first `most` behind a relative file name."""
     if not isinstance(uri, str):
         raise FileError(f'{user}: "uri" must be text')
     if uri.startswith("data:"):
@@ -243,16 +252,18 @@ def read_uri(path: Path, uri: Any, user: str) -> bytes:
         raise FileError(
             f'{user}: "{uri[:80]}" is not a file in the folder of {path.name} or below it'
         )
-    return read_bytes(file)
+    return read_bytes(file, most)
 
 
 def beside(path: Path, uri: str) -> Path | None:
-    """Return the file that a URI names, None outside of the folder: strangers send documents."""
+    """Return the file that a URI names, regular or not there; None outside of the folder."""
     name = PurePosixPath(unquote(uri))
     outside = name.is_absolute() or ".." in name.parts or ":" in str(name) or "\\" in str(name)
     if outside or "\0" in str(name) or not name.parts:
         return None
-    return path.parent.joinpath(*name.parts)
+    file = path.parent.joinpath(*name.parts)
+    regular_file(file, path.parent)
+    return file
 
 
 def with_whole_names(document: dict[str, Any]) -> dict[str, Any]:

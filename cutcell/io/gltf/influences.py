@@ -40,10 +40,8 @@ def sorted_influences(
     fits = slot < slots
     joints[rows[fits], slot[fits]] = columns[fits]
     shares[rows[fits], slot[fits]] = values[fits]
-    return (
-        joints.reshape(-1, sets, 4).transpose(1, 0, 2),
-        shares.reshape(-1, sets, 4).transpose(1, 0, 2),
-    )
+    joints, shares = (one.reshape(-1, sets, 4).transpose(1, 0, 2) for one in (joints, shares))
+    return joints, shares
 
 
 def take_influences(attributes: dict[str, int]) -> dict[str, int]:
@@ -53,17 +51,13 @@ def take_influences(attributes: dict[str, int]) -> dict[str, int]:
 
 
 def store_influences(
-    buffer: BufferWriter,
-    influences: tuple[NDArray, NDArray],
-    joint_count: int,
-    old: Mapping[str, int] | None = None,
+    buffer: BufferWriter, influences: tuple[NDArray, NDArray], joints: int, old: Mapping[str, int]
 ) -> dict[str, int]:
     """Store slots of four and return their accessors by attribute; `old` are those to replace."""
-    old = old or {}
     stored = {}
-    for n, (joints, shares) in enumerate(zip(*influences, strict=True)):
-        small = joint_count <= 256 and buffer.stored_type(old.get(f"JOINTS_{n}")) != np.uint16
-        numbers = joints.astype("<u1" if small else "<u2")
+    for n, (numbers, shares) in enumerate(zip(*influences, strict=True)):
+        small = joints <= 256 and buffer.stored_type(old.get(f"JOINTS_{n}")) != np.uint16
+        numbers = numbers.astype("<u1" if small else "<u2")
         for name, values in ((f"JOINTS_{n}", numbers), (f"WEIGHTS_{n}", shares.astype("<f4"))):
             stored[name] = buffer.store(values, old.get(name))
     return stored
@@ -89,11 +83,7 @@ def read_deform(
         if not isinstance(extras, dict) or KEY not in extras:
             continue
         flags = extras[KEY]
-        if (
-            isinstance(flags, list)
-            and len(flags) == len(joints)
-            and all(isinstance(flag, bool) for flag in flags)
-        ):
+        if isinstance(flags, list) and [type(flag) for flag in flags] == [bool] * len(joints):
             stored[joints] = np.maximum(stored[joints], flags)
         else:
             document.warnings.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from typing import Any
 
@@ -10,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import FileError, SkeletonError
 from ...rig.checks import LARGEST
-from .container import Document, indices
+from .container import Document, extensions, indices
+
+NODE_POINTER = re.compile("/nodes/(0|[1-9][0-9]{0,8})/(translation|rotation|scale|weights)")
 
 
 class Nodes:
@@ -30,7 +33,7 @@ class Nodes:
         self.scale = np.ones((count, 3))
         self.local = self._read_transforms()  # (k, 4, 4)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
-            self.world = self.compose_world(self.local[None])[0]
+            self.world = self.relative_to([])
         far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
         if len(far):
             raise FileError(
@@ -64,14 +67,6 @@ class Nodes:
             )
         return numbers
 
-    def compose_world(self, local: NDArray) -> NDArray:
-        """Return world matrices, shape (f, k, 4, 4), from local ones of the same shape."""
-        world = local.copy()
-        parents = np.array(self.parents, int)
-        for level in self.levels[1:]:
-            world[:, level] = world[:, parents[level]] @ local[:, level]
-        return world
-
     def with_ancestors(self, nodes: list[int]) -> list[int]:
         """Return some nodes and all that are above any of them, each once."""
         reached: set[int] = set()
@@ -91,7 +86,7 @@ class Nodes:
         return nearest
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
-        """Return matrices, shape (k, 4, 4), from each node to the nearest of some above it."""
+        """Return matrices (k, 4, 4) to the nearest of some nodes above, else to the scene."""
         relative = self.local.copy()
         parents = np.array(self.parents, int)
         chosen = np.zeros(len(self.raw), bool)
@@ -146,6 +141,17 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )
     return [np.array(level, int) for level in levels[:-1]]
+
+
+def target_of(channel: dict[str, Any]) -> tuple[Any, Any]:
+    """Return the node and the property that a channel moves; None and any other pointer."""
+    target = channel["target"]
+    extension = extensions(target).get("KHR_animation_pointer")
+    if not isinstance(extension, dict):
+        return target.get("node"), target.get("path")
+    pointer = str(extension.get("pointer"))
+    match = NODE_POINTER.fullmatch(pointer)
+    return (int(match[1]), match[2]) if match else (None, pointer)
 
 
 def node_shifts(

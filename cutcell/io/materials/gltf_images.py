@@ -6,6 +6,7 @@ import mimetypes
 import os
 import warnings
 from collections.abc import Sequence
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -84,16 +85,18 @@ def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict
     if not moved and (to_text or document.binary):
         return {}
     files: dict[Path, bytes] = {}
+    read = cache(_content)  # many images may be of one file
+    views: dict[bytes, int] = {}
     for image in buffer.document.get("images", []):
         uri = image.get("uri")
         if not isinstance(uri, str) or uri.startswith("data:"):
             continue
         file, goal = beside(source, uri), beside(target, uri)
-        content = None if file is None else _content(file)
+        content = None if file is None else read(file)
         if file is None or goal is None or content is None:
             continue
         if not to_text:
-            _embed(buffer, image, file.name, content)
+            _embed(buffer, image, file.name, content, views)
         elif not os.path.lexists(goal):
             files[goal] = content
         elif _content(goal) != content:
@@ -112,11 +115,15 @@ def _content(file: Path) -> bytes | None:
         return None
 
 
-def _embed(buffer: BufferWriter, image: dict[str, Any], name: str, content: bytes) -> None:
+def _embed(
+    buffer: BufferWriter, image: dict[str, Any], name: str, content: bytes, views: dict[bytes, int]
+) -> None:
     kind = image.get("mimeType") or _signed(content) or mimetypes.guess_type(name)[0]
     if kind is None:
         return
     del image["uri"]
     image.setdefault("name", Path(name).stem)
     image["mimeType"] = kind
-    image["bufferView"] = buffer.add_view(content)
+    if content not in views:
+        views[content] = buffer.add_view(content)
+    image["bufferView"] = views[content]

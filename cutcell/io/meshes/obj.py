@@ -86,11 +86,19 @@ def write_obj(mesh: TriangleMesh) -> str:
 
 
 def numbered_words(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the words of each line that is neither empty nor a comment."""
-    for number, line in enumerate(text.splitlines(), start=1):
-        tokens = line.split()
+    """Yield the number and the words of each line that is neither empty nor a comment.
+
+    A line that ends with a backslash goes on in the next one.
+    """
+    first, tokens = 0, list[str]()
+    for number, line in enumerate([*text.splitlines(), ""], start=1):
+        first = first if tokens else number
+        tokens += line.removesuffix("\\").split()
         if tokens and not tokens[0].startswith("#"):
-            yield number, tokens
+            if line.endswith("\\"):
+                continue
+            yield first, tokens
+        tokens = []
 
 
 def numbers(tokens: list[str], count: int, line: int) -> list[float]:

@@ -44,7 +44,10 @@ def scene_document(
 ) -> tuple[Document, NDArray | None]:
     """Return a scene as a document, and the matrix (4, 4) of its first skinned mesh."""
     if needs_mesh and not len(scene["mesh_names"]):
-        raise FileError("has no mesh")
+        has_joints = scene["node_bones"].any()
+        hint = ", but a skeleton: give it to the mesh of another file by --skeleton"
+        notes = "".join(f". {note}" for note in scene["notes"])
+        raise FileError(f"has no mesh{hint if has_joints else ''}{notes}")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
     if len(bad):
         name = scene["node_names"][bad[0]]
@@ -66,14 +69,13 @@ def scene_document(
     return document, world
 
 
-def dropped_note(scene: Mapping[str, NDArray]) -> str:
-    """Return what a scene's file has and the scene has not, with the names of the meshes."""
+def _dropped(scene: Mapping[str, NDArray]) -> dict[str, list[str]]:
+    """Return what a scene's file has and the scene has not, and the names of the meshes."""
     owners: dict[str, list[str]] = {}
     for k, name in enumerate(scene["mesh_names"].tolist()):
         for part in scene[f"mesh_{k}_dropped"].tolist():
             owners.setdefault(part, []).append(name)
-    parts = [f"{part} ({listed(names)})" for part, names in owners.items()]
-    return f"; not read: {', '.join(parts)}" if parts else ""
+    return owners
 
 
 class _SceneBuilder(GltfBuilder):
@@ -130,7 +132,7 @@ class _SceneBuilder(GltfBuilder):
         columns = scene[f"mesh_{k}_columns"]
         influences = sorted_influences(rows, columns, values, count, MAX_INFLUENCES)
         with np.errstate(over="ignore"):  # readers refuse what becomes infinite
-            return store_influences(self.buffer, influences, len(skin.joints))
+            return store_influences(self.buffer, influences, len(skin.joints), {})
 
     def add_clips(self, scene: Mapping[str, NDArray]) -> None:
         clips: list[dict[str, Any]] = [
@@ -168,8 +170,16 @@ def read_scene(path: Path, accessories: bool = False) -> Rig:
         "texture coordinates, and of its materials the base colours with their images; it is saved "
         "as a GLB without what else its materials have"
     )
-    document.warnings += [lost + dropped_note(scene), *map(str, scene.get("notes", ()))]
-    return read_rig(document, path, world, accessories, why_bare=_why_bare(scene))
+    dropped = _dropped(scene)
+    lost += "; not read: " * bool(dropped)
+    lost += ", ".join(f"{part} ({listed(names)})" for part, names in dropped.items())
+    document.warnings += [lost, *map(str, scene["notes"])]
+    why_bare = (
+        "it has no bones: only morph targets, which are not read, move its meshes. Give it a "
+        "skeleton from another file, or fit one"
+    )
+    why_bare *= "morph targets" in dropped
+    return read_rig(document, path, world, accessories, why_bare=why_bare)
 
 
 def scene_arrays(path: Path) -> Mapping[str, NDArray]:
@@ -194,14 +204,3 @@ def scene_arrays(path: Path) -> Mapping[str, NDArray]:
 
 def _kind(path: Path) -> str:
     return "USD" if path.suffix.lower() in USD else "FBX"
-
-
-def _why_bare(scene: Mapping[str, NDArray]) -> str:
-    """Return why a scene has no joints, if blend shapes move its meshes."""
-    blended = scene.get("blended", np.zeros(0))
-    if not len(blended):
-        return ""
-    return (
-        "it has no bones: only blend shapes, which are not read, move its meshes "
-        f"({listed(blended.tolist())}). Give it a skeleton from another file, or fit one"
-    )

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...geometry.triangles import normals
+from ...geometry.triangles import label_components, normals
 from ..mesh import TriangleMesh
 
 SPACING = 0.02
@@ -23,6 +21,8 @@ WELD = 1 << 20
 """Steps of a grid along the longest side: vertices in one cell are the same."""
 BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
+MAX_SAMPLES = 10_000_000
+"""Of large triangles in one place there may be any number: all are then cut less small."""
 
 
 class Body:
@@ -34,7 +34,7 @@ class Body:
         corners = _outward((mesh.vertices - low) / self.size, mesh.faces)
         self._low = low
         self._corners = corners
-        self.points, self.areas = _merged(*_samples(corners))
+        self.points, self.areas = _samples(corners)
         self._tree = cKDTree(self.points)
 
     def to_unit(self, points: NDArray) -> NDArray[np.float64]:
@@ -77,9 +77,7 @@ def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float6
     """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out."""
     grid = np.rint(vertices * WELD).astype(np.int64) @ [1 << 42, 1 << 21, 1]
     welded = np.unique(grid, return_inverse=True)[1][faces]
-    ends = welded[:, :2].ravel(), welded[:, 1:].ravel()
-    links = coo_matrix((np.ones(len(ends[0]), bool), ends), (len(vertices), len(vertices)))
-    part = connected_components(links, directed=False)[1][welded[:, 0]]
+    part = label_components(welded, len(vertices))[welded[:, 0]]
     corners = vertices[faces]
     sums = np.stack([np.bincount(part, x) for x in corners.mean(axis=1).T], axis=1)
     middles = sums / np.maximum(np.bincount(part), 1)[:, None]
@@ -90,31 +88,35 @@ def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float6
 
 
 def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors."""
+    """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors.
+
+    Samples in each cell of a grid are merged, so that fine meshes have no more than coarse.
+    """
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS).astype(int)
-    area = normals(corners) / 2
-    points, areas = [], []
+    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS)
+    excess = max(1, np.sqrt((splits**2).sum() / MAX_SAMPLES))
+    splits = np.maximum(splits / excess, 1).astype(int)
+    order = np.argsort(splits, kind="stable")
+    block = np.cumsum(splits[order] ** 2) // (BLOCK // 4)
+    sums = np.empty((0, 7))  # of each cell: the sums of its points and areas, and their number
+    for some in np.split(order, np.flatnonzero(np.diff(block)) + 1):
+        sums = np.concatenate([sums, _cut(corners[some], splits[some])])
+        cell = np.floor(sums[:, :3] / sums[:, 6:] / CELL).astype(np.int64)
+        where = np.unique(cell @ [1 << 42, 1 << 21, 1], return_inverse=True)[1]
+        sums = np.stack([np.bincount(where, column) for column in sums.T], axis=1)
+    return sums[:, :3] / sums[:, 6:], sums[:, 3:6]
+
+
+def _cut(corners: NDArray[np.float64], splits: NDArray[np.int_]) -> NDArray[np.float64]:
+    """Cut triangles into splits² equal ones; return middles, area vectors and ones, (s, 7)."""
+    rows, area = [], normals(corners) / 2
     for n in np.unique(splits):
         is_split = splits == n
         weights = _middles(int(n))
-        points.append(np.einsum("sc,mci->msi", weights, corners[is_split]).reshape(-1, 3))
-        areas.append(np.repeat(area[is_split] / n**2, len(weights), axis=0))
-    return np.concatenate(points), np.concatenate(areas)
-
-
-def _merged(
-    points: NDArray[np.float64], areas: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Merge the samples in each cell of a grid, so that fine meshes have no more than coarse."""
-    cell = np.floor(points / CELL).astype(np.int64)
-    key = (cell * [1 << 42, 1 << 21, 1]).sum(axis=1)
-    where, count = np.unique(key, return_inverse=True, return_counts=True)[1:]
-
-    def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.stack([np.bincount(where, x, len(count)) for x in values.T], axis=1)
-
-    return summed(points) / count[:, None], summed(areas)
+        points = np.einsum("sc,mci->msi", weights, corners[is_split]).reshape(-1, 3)
+        areas = np.repeat(area[is_split] / n**2, len(weights), axis=0)
+        rows.append(np.column_stack([points, areas, np.ones(len(points))]))
+    return np.concatenate(rows)
 
 
 def _middles(splits: int) -> NDArray[np.float64]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...geodesics import Bones
 from ...geometry.sorting import sort_by_group
+from ...graph.rays import column_span, height_between
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads
 
@@ -20,15 +19,6 @@ SMALL = 0.25
 """Maximum size of rigid accessories and components of one joint, as part of the longest side."""
 INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
-
-
-def label_components(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the connected component of each of `count` welded vertices, numbered from 0."""
-    a, b, c = faces.T
-    ends = np.concatenate([a, a]), np.concatenate([b, c])
-    graph = coo_array((np.ones(2 * len(faces), np.bool_), ends), shape=(count, count))
-    component: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return component
 
 
 def longest_sides(points: NDArray[np.float64], component: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -114,51 +104,17 @@ def _list_hits(points, faces, samples, start, face, sample, sign):
                 u, v = samples[s, 0], samples[s, 1]
                 if not (low_u <= u < high_u and low_v <= v <= high_v):
                     continue
-                facing = _crosses(points, faces[f], u, v)
-                if facing == 0:
+                v0, height0, v1, height1, side = column_span(points, faces, f, u)
+                if not v0 <= v < v1:
                     continue
                 if count < len(face):
-                    is_ahead = _height(points[a], points[b], points[c], u, v) > samples[s, 2]
+                    is_ahead = height_between(v0, height0, v1, height1, v) > samples[s, 2]
                     face[count], sample[count] = f, s
-                    sign[count] = facing if is_ahead else -facing
+                    sign[count] = side if is_ahead else -side
                 count += 1
     return count
-
-
-@no_refcount
-def _crosses(points, corners, u, v):
-    """Return 1 or -1 if a line passes through a face that faces up or down, 0 if it misses."""
-    # The number of edges of the face on the line u = const, on the side of larger v.
-    above, turn = 0, 0
-    for k in range(3):
-        i, j = corners[k], corners[(k + 1) % 3]
-        up = 1 if (points[j, 0] > u) and (points[i, 0] <= u) else 0
-        down = 1 if (points[i, 0] > u) and (points[j, 0] <= u) else 0
-        if up + down == 0:
-            continue
-        if down:  # one order of the ends, so that both faces of an edge agree
-            i, j = j, i
-        share = (u - points[i, 0]) / (points[j, 0] - points[i, 0])
-        if points[i, 1] + share * (points[j, 1] - points[i, 1]) > v:
-            above += 1
-            turn += up - down
-    # turn is +1 where the face is seen turning clockwise from above: facing down
-    return -turn if above == 1 else 0
 
 
 @compiled(inline="always")
 def _cell(u):
     return min(max(int(u * CELLS), 0), CELLS - 1)
-
-
-@no_refcount
-def _height(a, b, c, u, v):
-    """Return where the plane through three points is over (u, v)."""
-    x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    x2, y2, z2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-    cross = x1 * y2 - x2 * y1
-    if cross == 0:
-        return a[2]
-    s = ((u - a[0]) * y2 - (v - a[1]) * x2) / cross
-    t = ((v - a[1]) * x1 - (u - a[0]) * y1) / cross
-    return a[2] + s * z1 + t * z2

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
+from ...geometry.triangles import face_edges
+from ...geometry.vectors import TIE
 from ...rig import Skeleton
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
@@ -69,7 +71,8 @@ def _owned(
     chosen &= longest_sides(surface.points, surface.component) <= SMALL
     if skeleton is None or not chosen.any() or areas.max() < BODY * areas.sum():
         return np.zeros_like(starts)
-    chosen[surface.component[_open_edges(surface.faces)]] = False
+    edges, uses = np.unique(face_edges(surface.faces), axis=0, return_counts=True)
+    chosen[surface.component[edges[uses == 1, 0]]] = False  # open ones
     is_last = (skeleton.subtree & skeleton.deform).sum(axis=1) <= 1
     owned = starts & chosen[:, None] & is_last
     elsewhere = np.where(~starts & chosen[:, None], containment, 0).max(axis=0)
@@ -77,13 +80,6 @@ def _owned(
     if not (skeleton.deform & ~owned.any(axis=0)).any():
         owned[:] = False  # no other joint can take the rest
     return owned
-
-
-def _open_edges(faces: NDArray[np.int32]) -> NDArray[np.intp]:
-    """Return one vertex of each edge that only one face has."""
-    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
-    key, count = np.unique(edges[:, 0] << 32 | edges[:, 1], return_counts=True)
-    return key[count == 1] >> 32
 
 
 def cross_component_penalty(
@@ -113,18 +109,24 @@ def make_rigid(
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
-    component, strongest = surface.component, weights.argmax(axis=1)
-    entries = surface.areas, (component, strongest)
-    votes = csr_array(entries, (len(independent), weights.shape[1]))
-    share = votes.max(axis=1).toarray().ravel() / np.maximum(votes.sum(axis=1), 1e-300)
+    component = surface.component
+    entries = surface.areas, (component, strongest(weights))
+    votes = csr_array(entries, (len(independent), weights.shape[1])).toarray()
+    share = votes.max(axis=1) / np.maximum(votes.sum(axis=1), 1e-300)
     rigidity = np.where(independent, 0.0, ramp(share, *RIGID))[component]
     chosen = np.flatnonzero(rigidity)
     if not len(chosen):
         return weights
     result = weights.copy()
     result[chosen] *= 1 - rigidity[chosen, None]
-    result[chosen, votes.argmax(axis=1)[component[chosen]]] += rigidity[chosen]
+    result[chosen, strongest(votes)[component[chosen]]] += rigidity[chosen]
     return result
+
+
+def strongest(shares: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the joint with the largest of each row's shares (n, j), the first of equals."""
+    most = shares.max(axis=1, keepdims=True)
+    return (shares >= most * (1 - TIE)).argmax(axis=1)
 
 
 def ramp(share: NDArray[np.float64], low: float, high: float) -> NDArray[np.float64]:

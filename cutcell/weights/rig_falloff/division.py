@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
-from ...geometry.vectors import segment_fraction
+from ...geometry.vectors import TIE, segment_fraction
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment
@@ -128,18 +128,7 @@ def _divide(
 
 @no_refcount
 def _divide_by_distance(
-    points,
-    normals,
-    distance,
-    penalty,
-    component,
-    bone,
-    start,
-    end,
-    near,
-    radius,
-    chosen,
-    weights,
+    points, normals, distance, penalty, component, bone, start, end, near, radius, chosen, weights
 ):
     """Divide chosen vertices among joints by distance; `bone` holds the first bone of each joint.
 
@@ -178,9 +167,11 @@ def _facing(point, normal, start, end, first, last):
             displacement = point[c] - start[b, c] - t * (end[b, c] - start[b, c])
             length += displacement * displacement
             out += displacement * normal[c]
-        if length < nearest:
-            nearest = length
-            cosine = out / np.sqrt(length) if length > 0 else 0.0
+        length = np.sqrt(length)
+        if length < nearest + TIE:
+            out = out / length if length > TIE else 0.0
+            cosine = out if length < nearest - TIE else max(out, cosine)
+            nearest = min(length, nearest)
     return FACING_LEAST + (1 - FACING_LEAST) * (1 + cosine) / 2
 
 
@@ -207,7 +198,8 @@ def _radii(
     joint, length, total = joint[order], length[order], np.cumsum(area[order])
     first = np.searchsorted(joint, np.arange(len(distance) + 1))
     before = np.concatenate([[0.0], total])[first]
-    median = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
+    middle = (before[:-1] + before[1:]) / 2 - TIE * before[-1]
+    median = np.maximum(np.searchsorted(total, middle), first[:-1])
     radius = np.full(len(distance), np.inf)
     measured = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
     least = MIN_RADIUS / resolution

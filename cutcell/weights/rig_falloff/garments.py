@@ -34,7 +34,7 @@ def drape(
     garment = np.flatnonzero(follows)
     if not len(garment):
         return weights
-    _, corners = nearest_on_body(context.graph, has_bones[component], surface.points[garment])
+    _, mean = nearest_on_body(context.graph, has_bones[component], surface.points[garment])
     draped = weights.copy()
-    draped[garment] = weights[corners].mean(axis=1)
+    draped[garment] = mean @ weights
     return weights + follows[:, None] * (context.diffusion.spread(draped) - weights)

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...geodesics.bones import TIE
 from ...geodesics.nearest import NodeTree
+from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from .components import SMALL, longest_sides
-from .containment import ramp
+from .containment import ramp, strongest
 from .surface_operators import SurfaceOperators
 
 CONTACT = 1.0
@@ -61,13 +61,13 @@ def attach(
     points, component, areas = surface.points, surface.component, surface.areas
     on_body = ~is_accessory[component]
     attached = np.flatnonzero(~on_body)
-    distance, corners = nearest_on_body(graph, on_body, points[attached])
+    distance, mean = nearest_on_body(graph, on_body, points[attached])
     label = component[attached]
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
-    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution)
+    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution + TIE)
     rows = _contact_weights(
-        weights[corners[touching]].mean(axis=1),
+        (mean @ weights)[touching],
         areas[attached[touching]] + 1e-12,
         label[touching],
         len(is_accessory),
@@ -89,26 +89,26 @@ def _contact_weights(
     joints = np.eye(touched.shape[1])
     total = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
     mean = gather @ touched / total
-    strongest = gather @ joints[touched.argmax(axis=1)] / total
-    share = np.maximum(strongest, mean)
+    share = np.maximum(gather @ joints[strongest(touched)] / total, mean)
     alone = ramp(share.max(axis=1, keepdims=True), *DOMINANT)
-    return mean + alone * (joints[share.argmax(axis=1)] - mean)
+    return mean + alone * (joints[strongest(share)] - mean)
 
 
 def nearest_on_body(
     graph: CutCellGraph, on_body: NDArray[np.bool_], points: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+) -> tuple[NDArray[np.float64], csr_array]:
     """Measure from points to the body's surface: its vertices, and where rays hit it.
 
-    Returns the distances, and for the nearest node of each point the three welded vertices that
-    its weights are the mean of.
+    Returns the distances (p,), and the matrix (p, k) that makes weights of welded vertices the
+    weights at the points: the means over the corners of the faces that their nearest nodes are on.
     """
     first = graph.first_surface
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points, TIE)
-    node = node[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
-    distance = np.linalg.norm(graph.nodes[node] - points, axis=1)
-    on_face = graph.faces[graph.triangle[node]]
-    return distance, np.where(node[:, None] < first, node[:, None], on_face).astype(np.int32)
+    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
+    corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
+    part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)
+    mean = csr_array((part, (np.repeat(of, 3), corners.ravel())), (len(points), len(on_body)))
+    return distance[np.searchsorted(of, np.arange(len(points)))], mean

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.laplacian import stiffness, vertex_areas, vertex_normals
+from ...geometry.triangles import label_components
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
-from .components import label_components
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,6 +46,8 @@ class BindReport:
     lost : dict of str to str
         Failures by name that are not in the store because another attempt may succeed: a worker
         that died, too little memory on this machine.
+    damaged : tuple of str
+        Sources whose file in the store was damaged, so that they were bound again.
     """
 
     store: Path
@@ -55,6 +57,7 @@ class BindReport:
     failed: int
     seconds: float
     lost: Mapping[str, str] = field(default_factory=dict)
+    damaged: tuple[str, ...] = ()
 
     @property
     def failures(self) -> dict[str, str]:
@@ -146,9 +149,8 @@ def bind_all(
             run.write_manifest()
     rows = run.sorted_rows()
     failed = sum(bool(row["error"]) for row in rows)
-    return BindReport(
-        folder, rows, run.bound, run.unchanged, failed, perf_counter() - begin, run.lost
-    )
+    counts = run.bound, run.unchanged, failed
+    return BindReport(folder, rows, *counts, perf_counter() - begin, run.lost, tuple(run.damaged))
 
 
 class _Run:
@@ -172,6 +174,7 @@ class _Run:
         self._jobs: dict[str, _Job] = {}
         self.bound = self.unchanged = 0
         self.lost: dict[str, str] = {}
+        self.damaged: list[str] = []
 
     def all(self, sources: list[Source], cluster: Cluster) -> None:
         """Bind all sources, no more at a time than the workers can take."""
@@ -198,6 +201,8 @@ class _Run:
             self.unchanged += 1
             self._note(source, digest, outcome)
             return
+        if self._store.path(key).is_file():
+            self.damaged.append(source.name)
         self._jobs[key] = _Job(key, digest, [source])
         cluster.submit(
             key, bind_isolated, content, key, self._parameters, self._limit, cluster.slots

@@ -13,7 +13,8 @@ from typing import Any
 
 from cutcell.errors import CutcellError, FileError
 from cutcell.io import load
-from cutcell.io.files import naming, read_bytes
+from cutcell.io.files import naming, read_bytes, regular_file
+from cutcell.io.gltf.container import beside
 from cutcell.io.rignet import rig_file
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
@@ -207,10 +208,9 @@ def _referenced(path: Path) -> dict[str, Path]:
         names = [e["uri"] for e in entries if not e.get("uri", "data:").startswith("data:")]
     except (OSError, ValueError, AttributeError, TypeError):
         return {}  # the reader of glTF files reports the fault
-    from urllib.parse import unquote
-
-    inside = {unquote(name) for name in names if ".." not in Path(unquote(name)).parts}
-    return {name: path.parent / name for name in sorted(inside) if (path.parent / name).is_file()}
+    beside_it = sorted(file for file in {beside(path, name) for name in names} if file is not None)
+    files = {file: regular_file(file, path.parent) for file in beside_it}
+    return {file.relative_to(path.parent).as_posix(): real for file, real in files.items() if real}
 
 
 def _named(sources: list[Source]) -> list[Source]:

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from cutcell import __version__
 from cutcell.errors import FileError, MissingLibraryError
+from cutcell.io.files import one_line
 from cutcell.method import PAPER, Method
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.sources import PACKAGE, source_digest
@@ -129,14 +130,17 @@ class Store:
         return self.folder / key[:2] / f"{key}{ending}"
 
     def outcome(self, key: str) -> Outcome | None:
-        """Return the outcome of an asset, None if it was not bound yet."""
+        """Return the outcome of an asset, None if it was not bound yet or its file is cut short."""
         try:
             record = json.loads(self.path(key, ".json").read_bytes())
         except (OSError, ValueError):
             return None
         if not isinstance(record, dict):
             return None
-        if not record.get("error") and not self.path(key).is_file():
+        file = self.path(key)
+        if not record.get("error") and not (
+            file.is_file() and file.stat().st_size == record.get("bytes")
+        ):
             return None
         return Outcome(key, record)
 
@@ -327,8 +331,13 @@ def read_entry(path: Path) -> Entry:
             arrays["bone_joints"],
             _unpacked("bone_distances", arrays, np.inf),
         )
-    except (OSError, ValueError, KeyError, EOFError) as error:
-        raise FileError(f"{path.name}: is no file of a store ({reason(error)})") from None
+    except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
+        raise FileError(f"{path.name}: cannot be read ({reason(error)})") from None
+    except Exception as error:  # zipfile and its decoders raise whatever their parsing runs into
+        raise FileError(
+            f"{path.name}: is damaged, or no file of a store ({one_line(error)}); remove it and "
+            "run `cutcell dataset bind` again"
+        ) from None
 
 
 def _packed(name: str, table: NDArray, empty: float, precision: str) -> dict[str, NDArray]:

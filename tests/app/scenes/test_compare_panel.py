@@ -13,6 +13,7 @@ from cutcell_app.features.compare.choices import NOW, offered
 from cutcell_app.features.compare.controls import FIELD, about, rows_of
 from cutcell_app.features.compare.results import Compared, choose, measured
 from cutcell_app.features.compare.scene import WAITING, caption_of, field_shown, title_of
+from cutcell_app.features.learn.lesson import Answer, Lesson, Step
 from cutcell_app.features.scenes import Memo, resolve
 from cutcell_app.widgets.controls import draw
 from cutcell_lab.baselines import METHODS, BaselineBinding
@@ -41,7 +42,7 @@ class Page:
 
 def test_each_method_has_a_view_of_its_own_and_bones_stand_in_all(state, rig, euclidean):
     scene = resolve(state)
-    assert scene.views == ("cutcell (current settings)", "From file", "Euclidean")
+    assert scene.views == ("Current weights", "From file", "Euclidean")
     bodies = [scene.actors[name] for name in ("body", "body 1", "body 2")]
     assert [body.view for body in bodies] == [0, 1, 2]
     assert scene.actors["bones"].view is None
@@ -76,6 +77,18 @@ def test_a_difference_is_taken_from_the_method_that_is_named(state, rig, euclide
     assert share.max() <= 1 + 1e-9
 
 
+def test_a_step_of_a_lesson_gives_captions(state):
+    state.lesson = Lesson(
+        (Step("T", "Q", "panel=compare", Answer("choice"), captions={"euclidean": "B"}),)
+    )
+    state.param.update(step=0, minus="euclidean")
+    assert resolve(state).views == (
+        "cutcell (current settings) − B",
+        "From file − B",
+        "B − itself",
+    )
+
+
 def test_errors_share_one_scale(state, rig, binding, euclidean):
     state.compared = {**state.compared, NOW: measured(rig, NOW, binding, 16, silent)}
     state.compare_field = "error"
@@ -85,6 +98,9 @@ def test_errors_share_one_scale(state, rig, binding, euclidean):
     assert one.limits == other.limits
     assert one.limits[1] >= np.quantile(lengths, 0.99)
     np.testing.assert_allclose(other.scalars, lengths, rtol=1e-6)
+    for state.minus in ("", "artist"):  # which weights alone have
+        mean = np.sqrt(euclidean.errors.mean) * 10
+        assert resolve(state).views[2] == f"Euclidean · {mean:.0f} mm", "of these colours"
     assert scene.actors["body 1"].scalars is None  # the file's own was not measured yet
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.geodesics import path_length
 from cutcell_app.derive.derived import compute_wanted
 from cutcell_app.document import loading
 from cutcell_app.document.address import from_query, to_query
@@ -13,12 +12,14 @@ from cutcell_app.features.distance.choices import MEASURES as NAMED
 from cutcell_app.features.distance.measures import WAITING
 from cutcell_app.features.distance.results import RESULTS
 from cutcell_app.features.distance.scene import farthest, wants_field
-from cutcell_app.features.scenes import following, resolve
+from cutcell_app.features.scenes import Memo, following, resolve
+from cutcell_app.features.weights.facts import vertex_facts
 from cutcell_lab.baselines.measured_distance import (
     MEASURES,
     mean_error,
     measure_distance,
 )
+from cutcell_viewers.distance_scene import longest_side
 from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
 
@@ -60,11 +61,33 @@ def test_from_a_clicked_vertex_each_draws_its_path(state):
     state.vertex = 0
     scene = resolve(state)
     for view, name in enumerate(state.measures):
-        path = state.measured[name].path_from(0)
         assert scene.actors[f"path {view}"].view == view
-        assert scene.views[view].endswith(f" · {path_length(path):.3g}")
+        distance = state.measured[name].vertices[0] * longest_side(state.rig)
+        assert scene.views[view].endswith(f" · {distance:.3g} units"), "as coloured and exported"
     state.path = False
     assert "path 0" not in resolve(state).actors
+
+
+def test_a_distance_is_one_number_in_caption_legend_and_card(rig, binding):
+    """The path that is drawn may be shorter or longer by a cell."""
+    state = State(rig=rig, binding=binding, joint=2, panel="distance", vertex=0)
+    state.param.update(resolution=16, beside_resolution=16, beside_any=True)
+    compute_wanted(state, RESULTS)
+    (caption,) = resolve(state).views
+    state.beside_any = False
+    compute_wanted(state, RESULTS)
+    (text,) = (text for _, text in resolve(state).legend.swatches if text.startswith("shortest"))
+    facts = vertex_facts(state, Memo())
+    (row,) = (one for one in facts["distances"] if one["joint"] == 2)
+    exported = binding.distances.joint[2, 0] * longest_side(rig)
+    for one in (caption, text, f"{row['distance']:.3g} {facts['unit']}"):
+        assert one.endswith(f"{exported:.3g} units")
+
+
+@pytest.mark.parametrize("scale", [0.5, 2.0])
+def test_views_side_by_side_keep_a_scale_that_is_chosen(state, scale):
+    state.scale_end = scale
+    assert {resolve(state).actors[name].limits for name in ("body", "body 1")} == {(0.0, scale)}
 
 
 def test_waves_are_in_step(state):

@@ -9,6 +9,8 @@ import pytest
 import cutcell
 from cutcell.io import SAVED
 from cutcell.io.materials.transfer import read_materials
+from tests.bars import bar as rigged_bar
+from tests.bars import side_by_side
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, column
 
@@ -267,6 +269,42 @@ def test_the_method_of_layers_is_taken_unless_an_option_says_otherwise(run, bar,
     np.testing.assert_array_equal(cutcell.load(out).weights, expected)
     document = json.loads(run("bind", bar, out, "--layers", path, "-r", 20, "--json").stdout)
     assert document["parameters"]["resolution"] == 20
+
+
+def test_an_option_of_its_default_counts_beside_layers(run, bar, tmp_path):
+    path = tmp_path / "edits.json"
+    stored = {"resolution": 16, "samples": 9, "falloff": "paper", "alpha": 0.3}
+    cutcell.Edits(method=stored).save(path)
+    for words, parameters in (
+        (["-r", 64], {"resolution": 64, "samples": 9}),
+        (["--samples", 5], {"resolution": 16, "samples": 5, "alpha": 0.3}),
+        (["--method", "animation", "-r", 12], {"resolution": 12, "samples": 5, "alpha": None}),
+        (["--orient", "--threshold", 0], {"resolution": 16, "orient": True}),
+    ):
+        done = run("bind", bar, tmp_path / "out.npz", "--layers", path, *words, "--json")
+        assert parameters.items() <= json.loads(done.stdout)["parameters"].items()
+    weights = cutcell.bind(cutcell.load(bar), 20, falloff="paper", alpha=0.3, samples=9).weights[0]
+    done = run("explain", bar, 0, "--layers", path, "-r", 20, "--json")
+    for share in json.loads(done.stdout)["joints"]:
+        assert share["weight"] == pytest.approx(weights[share["joint"]])
+
+
+def test_a_resolution_counts_along_the_whole_mesh_and_what_was_built_is_printed(
+    run, tmp_path, monkeypatch
+):
+    """Of characters side by side, one that is left out counts along the largest."""
+    two = side_by_side(rigged_bar(12))
+    path, out = tmp_path / "two.obj", tmp_path / "bound.npz"
+    path.touch()
+    monkeypatch.setattr("cutcell.io.load", lambda *_, **__: two)
+    for words, resolution in (["-r", 64], 64), (["--resolution", 20], 20), ([], 141):
+        document = json.loads(run("bind", path, out, *words, "--json").stdout)
+        assert document["parameters"]["resolution"] == resolution
+        assert document["graph"]["resolution"] == resolution
+    weights = cutcell.bind(two, 20).weights[0]
+    done = json.loads(run("explain", path, 0, "-r", 20, "--json").stdout)
+    for share in done["joints"]:
+        assert share["weight"] == pytest.approx(weights[share["joint"]])
 
 
 def test_a_template_is_fitted_into_a_mesh_without_a_skeleton(run, tmp_path):

@@ -7,6 +7,8 @@ import pytest
 
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
+from cutcell.diagnosis.parts import check_far_parts
+from cutcell.diagnosis.subject import Subject
 from tests.bars import grid_box
 from tests.cutcell.diagnosis.worm import worm
 
@@ -71,9 +73,48 @@ def test_other_parts_are_no_fault(at, joint, shares):
     assert "far-parts" not in cutcell.diagnose(rig, 24, only_weights=True)
 
 
+def test_an_empty_joint_in_a_part_is_named_but_no_control():
+    at = np.array([0.5, 0.2, 0.0])
+    rig, _ = with_part(at, 1, bone=[at, np.add(at, [0.5, 0, 0])])
+    names, deform = list(rig.skeleton.names), np.ones(len(rig.skeleton.names), bool)
+    deform[-2:] = False
+    for name, expected in (("prop", names.index("blade")), ("ik_ctrl", -1), ("handIK", -1)):
+        names[-2] = name
+        skeleton = replace(rig.skeleton, names=names, deform=deform)
+        finding = cutcell.diagnose(replace(rig, skeleton=skeleton), 24, only_weights=True)
+        assert finding["far-parts"].empty == (expected,)
+
+
 def test_a_part_that_may_not_follow_the_nearest_is_no_fault():
     rig, part = with_part([0.9, 0.15, 0.0], 1)
     allowed = np.ones(rig.weights.shape, bool)
     allowed[part] = rig.weights[part] > 0
     rig = replace(rig, allowed=allowed)
     assert "far-parts" not in cutcell.diagnose(rig, 24, only_weights=True)
+
+
+def test_a_part_that_moves_with_the_body_it_touches_is_no_fault():
+    rig, _ = with_part([0.9, 0.15, 0.0], 1)
+    weights = np.zeros_like(rig.weights)
+    weights[:, 1] = 1  # the whole body follows a joint at its other end
+    assert "far-parts" not in cutcell.diagnose(rig.with_weights(weights), 24, only_weights=True)
+
+
+def test_two_parts_that_touch_each_other_may_both_be_wrong():
+    rig, part = with_part([0.9, 0.15, 0.0], 1)
+    count = len(rig.mesh.vertices)
+    faces = rig.mesh.faces[(rig.mesh.faces >= part[0]).all(axis=1)]
+    above = rig.mesh.vertices[part] + [0.0, 0.09, 0.0]
+    mesh = TriangleMesh(
+        np.vstack([rig.mesh.vertices, above]),
+        np.vstack([rig.mesh.faces, faces - part[0] + count]),
+    )
+    both = Rig(mesh, rig.skeleton, np.vstack([rig.weights, rig.weights[part]]))
+    finding = cutcell.diagnose(both, 24, only_weights=True)["far-parts"]
+    assert len(finding.parts) == 2
+
+
+def test_undamaged_characters_have_no_part_on_a_wrong_joint(rigs):
+    for path in rigs:
+        subject = Subject(cutcell.load(path), 32)
+        assert not list(check_far_parts(subject)), path.name

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -79,6 +80,36 @@ def test_it_is_plain_data_and_needs_no_weights_of_the_file():
 def test_a_vertex_that_is_not_there_is_refused():
     with pytest.raises(ParameterError, match="vertex must be a whole number"):
         cutcell.explain(RIG, len(RIG.mesh.vertices))
+
+
+def renamed(rig):
+    joints = rig.skeleton
+    return replace(rig, skeleton=replace(joints, names=("eye", *joints.names[1:])))
+
+
+def reoriented(rig):
+    axes = np.tile(np.eye(3), (len(rig.skeleton.joints), 1, 1))
+    return replace(rig, skeleton=replace(rig.skeleton, orientations=axes))
+
+
+@pytest.mark.parametrize("change", [renamed, reoriented])
+def test_distances_of_another_skeleton_are_refused(change):
+    rig = bar()
+    distances = cutcell.bind(rig, 16).distances
+    cutcell.explain(rig, 0, 16, distances=distances)
+    with pytest.raises(ParameterError, match="distances does not fit: other Skeleton"):
+        cutcell.explain(change(rig), 0, 16, distances=distances)
+
+
+def test_distances_that_are_not_those_of_bind_are_refused():
+    rig = bar(joints=8)
+    graph = cutcell.build_graph(rig.mesh, 16)
+    measure = partial(cutcell.bone_distances, graph, rig.skeleton)
+    for options in ({"nearest_joints": 1}, {"within": 1.5}, {"nearest": 1}, {"samples": 2}):
+        with pytest.raises(ParameterError, match=" ".join(options).replace("_", " ")):
+            cutcell.explain(rig, 0, 16, distances=measure(**options))
+    for options in ({"nearest_joints": 5}, {"within": 9}):
+        cutcell.explain(rig, 0, 16, distances=measure(**options))
 
 
 @pytest.mark.parametrize("method", ["animation", "few"])

@@ -13,7 +13,7 @@ from cutcell.editing.symmetry import Mirror, find_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from tests.app.small import small_rig
-from tests.bars import bar, grid_box
+from tests.bars import bar, grid_box, legs
 
 JOINTS = 5
 
@@ -257,6 +257,43 @@ def test_one_side_is_taken_for_the_other():
         assert set(changed) == set(mirror.vertex[some])
         changed, _ = ops.mirrored(replace(every, vertices=mirror.vertex[some]), mirror, positive)
         assert set(changed) == set(mirror.vertex[some])
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_no_weight_is_mirrored_onto_a_control(named):
+    rig = legs()
+    names = rig.skeleton.names
+    if not named:
+        names = [f"joint_{number}" for number in range(len(names))]
+        rig = replace(rig, skeleton=replace(rig.skeleton, names=names))
+    mirror = find_mirror(rig)
+    weights = np.random.default_rng(6).random(rig.weights.shape) * rig.skeleton.deform
+    weights /= weights.sum(axis=1, keepdims=True)
+    every = Selected(rig, weights, np.arange(len(weights)))
+    vertices, rows = mirrored(every, mirror, True)
+    assert not rows[:, ~rig.skeleton.deform].any()
+    result = weights.copy()
+    result[vertices] = rows
+    np.testing.assert_allclose(result, result[mirror.vertex][:, mirror.swap], atol=1e-12)
+    carries = np.flatnonzero(rig.skeleton.deform[1:]) + 1
+    assert {mirror.how[joint] for joint in carries} == {"name" if named else "place"}
+
+
+def test_a_pair_that_was_set_counts_for_both():
+    rig = legs()
+    shin, other, twist = (
+        rig.skeleton.names.index(n) for n in ("shin.l", "shin.r", "thigh_twist.r")
+    )
+    mirror = find_mirror(replace(rig, partners={"shin.l": "thigh_twist.r"}))
+    assert (mirror.joint[shin], mirror.joint[twist], mirror.joint[other]) == (twist, shin, -1)
+    assert (mirror.how[shin], mirror.how[twist], mirror.how[other]) == ("set", "set", "")
+    alone = find_mirror(replace(rig, partners={"shin.l": ""}))
+    assert alone.joint[[shin, other]].tolist() == [-1, -1]
+    edits = cutcell.Edits(joints={"shin.l": cutcell.JointEdit(partner="thigh_twist.r")})
+    again = cutcell.Edits.from_json(edits.to_json())
+    assert find_mirror(cutcell.edited_rig(rig, again)).joint[shin] == twist
+    with pytest.raises(ParameterError, match="no joint"):
+        cutcell.edited_rig(rig, cutcell.Edits(joints={"shin.l": cutcell.JointEdit(partner="?")}))
 
 
 def test_joints_without_a_partner_stay_as_sides_are_swapped():

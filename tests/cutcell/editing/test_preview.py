@@ -54,6 +54,17 @@ def test_distances_along_edges_are_those_of_a_measurement_from_all_joints(robot)
     assert measured.measure(robot.skeleton) is binding.distances
 
 
+def test_approximate_distances_are_not_taken_for_exact_ones(robot):
+    method = cutcell.ANIMATION.with_options(resolution=24)
+    binding = cutcell.bind(robot, method=method)
+    other = moved(robot, "forearm.L", [0.02, 0.03, 0])
+    distances = Preview(robot, binding, method).bind(other).distances
+    for use in (cutcell.explain, cutcell.diagnose):
+        vertex = [0] if use is cutcell.explain else []
+        with pytest.raises(cutcell.ParameterError, match="approximate"):
+            use(other, *vertex, 24, distances=distances)
+
+
 def test_a_part_keeps_the_only_joint_that_reaches_it():
     box = trimesh.creation.box((1, 1, 1)).subdivide().subdivide()
     mesh = trimesh.util.concatenate([box, box.copy().apply_translation([3, 0, 0])])

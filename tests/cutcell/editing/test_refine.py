@@ -18,8 +18,14 @@ from cutcell.editing.locks import joint_index, lock_joints
 from cutcell.editing.selections import Neighbours
 from cutcell.editing.symmetry import find_mirror, mirrored
 from tests import meshes
+from tests.bars import bar
 
 RNG = np.random.default_rng(7)
+
+
+def test_weights_of_another_shape_are_refused():
+    with pytest.raises(WeightsError, match=r"weights has the shape \(3, 2\), expected"):
+        refine_weights(bar(), np.full((3, 2), 0.5), smoothing=1)
 
 
 def smooth_weights(mesh, weights, passes):
@@ -77,7 +83,9 @@ def test_smoothing_carries_weight_one_edge_a_pass_and_keeps_sums():
         np.testing.assert_allclose(found.sum(axis=1), 1)
         reached = np.unique(mesh.vertices[found[:, 1] > 0, 0])
         assert reached.min() == 3 - passes
-    assert refine_weights(mirrored_rig(), weights) is weights
+    rig = mirrored_rig()
+    weights = random_weights(len(rig.mesh.vertices), 4)
+    assert refine_weights(rig, weights) is weights
 
 
 def test_smoothing_crosses_seams_but_no_gaps():

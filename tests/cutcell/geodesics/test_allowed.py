@@ -62,6 +62,35 @@ def test_weights_are_nearly_those_of_all_joints():
     np.testing.assert_allclose(*weights, atol=1e-3)
 
 
+@pytest.mark.parametrize("method", ["animation", "paper"])
+def test_weights_follow_a_mask_that_their_distances_did_not_know(method):
+    rig = bar(24, joints=9)
+    graph = cutcell.build_graph(rig.mesh, 24, method=method)
+    distances = bone_distances(graph, rig.skeleton, method=method, nearest_joints=9, within=1e9)
+    allowed = np.zeros((len(rig.mesh.vertices), 9), bool)
+    allowed[:, 0] = allowed[::2, 7] = True
+    weights = cutcell.skinning_weights(distances, method=method, allowed=allowed)
+    np.testing.assert_array_equal(weights[~allowed], 0)
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+    last = np.argmax(rig.mesh.vertices[::2, 0]) * 2
+    assert weights[last, 7] > 0.5
+    for wrong in (allowed[0], allowed[:, :3], np.zeros_like(allowed)):
+        with pytest.raises(
+            cutcell.WeightsError, match=r"allowed has the shape|may follow no joint"
+        ):
+            cutcell.skinning_weights(distances, method=method, allowed=wrong)
+
+
+def test_a_mask_that_permits_only_what_was_not_measured_is_refused():
+    """Nothing stands in for a distance; those by the same mask have it."""
+    allowed = np.zeros((len(RIG.mesh.vertices), 33), bool)
+    allowed[:, 0] = True
+    with pytest.raises(cutcell.WeightsError, match="measure by `allowed`"):
+        cutcell.skinning_weights(bone_distances(GRAPH, RIG.skeleton), allowed=allowed)
+    distances = bone_distances(GRAPH, RIG.skeleton, allowed=allowed)
+    assert (cutcell.skinning_weights(distances, allowed=allowed) == allowed).all()
+
+
 def test_vertices_that_only_other_joints_reach_have_a_reason():
     rig, allowed, beside = RIG, halves(), np.array([0, 3, 0])
     vertices = np.concatenate([rig.mesh.vertices, rig.mesh.vertices + beside])

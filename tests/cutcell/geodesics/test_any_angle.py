@@ -172,7 +172,7 @@ def test_with_three_joints_for_certain_the_fourth_is_hardly_ever_missed():
         bone_distances(graph, rig.skeleton, leaf="fit", nearest_joints=n).joint for n in (None, 3)
     )
     fourth, result = (np.sort(distance, axis=0)[3] for distance in (every, few))
-    assert (result <= fourth * 1.01).mean() > 0.98
+    assert (result <= fourth * 1.01).mean() > 0.97
 
 
 def test_some_joints_are_measured_where_no_other_is_much_nearer():

@@ -6,18 +6,22 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
+import cutcell
 from cutcell import (
     Cancelled,
     ParameterError,
     Skeleton,
+    SkeletonError,
     TriangleMesh,
     WeightsError,
     bone_segments,
 )
-from cutcell.geodesics import FALLBACK_REASONS
+from cutcell.geodesics import FALLBACK_REASONS, bone_samples
+from cutcell.geodesics.bones import LONGEST
 from cutcell.geodesics.fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
 from cutcell.geometry.segments import distance_to_segment
 from tests import meshes, naive
+from tests.bars import bar
 from tests.paper import bone_distances, build_graph
 
 ARM = Skeleton(
@@ -32,6 +36,32 @@ def with_second_part(vertices, faces):
         np.concatenate([vertices, extra]),
         np.concatenate([faces, extra_faces + len(vertices)]),
     )
+
+
+@pytest.mark.parametrize("leaf", ["point", "extend", "fit"])
+@pytest.mark.parametrize("deform", [[True, True, False], [False, True, True]])
+def test_a_far_joint_that_does_not_deform_has_few_samples(leaf, deform):
+    rig = bar(joints=3)
+    graph = cutcell.build_graph(rig.mesh, 16)
+    results = []
+    for far in (50, 25_000, 1e12):
+        joints = rig.skeleton.joints.copy()
+        joints[deform.index(False), 1] += far
+        skeleton = Skeleton(joints, [-1, 0, 1], deform=deform)
+        distances = cutcell.bone_distances(graph, skeleton, leaf=leaf)
+        counts = np.bincount(bone_samples(graph, distances.bones)[1])
+        assert counts.max() <= LONGEST * 16 + 1
+        results.append(distances.joint)
+    np.testing.assert_allclose(results[1], results[0], atol=0.05)
+    np.testing.assert_allclose(results[2], results[1], atol=0.05)
+
+
+def test_a_skeleton_in_other_units_is_refused():
+    rig = bar()
+    graph = cutcell.build_graph(rig.mesh, 16)
+    skeleton = Skeleton(100 * rig.skeleton.joints, rig.skeleton.parents)
+    with pytest.raises(SkeletonError, match="are skeleton and mesh in the same units"):
+        cutcell.bone_distances(graph, skeleton)
 
 
 @pytest.mark.parametrize("connectivity", [6, 26])

@@ -20,8 +20,8 @@ def test_nearest_are_those_of_all(resolution, count):
     corners = np.stack(np.meshgrid(*[np.arange(9) / 8] * 3), axis=-1).reshape(-1, 3)
     points = np.concatenate([inside, outside, corners])
     apart = np.where(chosen, cdist(points, nodes), np.inf)
-    expected = np.nonzero(apart <= apart.min(axis=1, keepdims=True) * (1 + 1e-9))
-    point, node = NodeTree(nodes, chosen, resolution).nearest(points, 1e-9)
+    expected = np.nonzero(apart <= apart.min(axis=1, keepdims=True) + 1e-9)
+    point, node = NodeTree(nodes, chosen, resolution).nearest(points)
     assert (np.diff(point) >= 0).all()
     assert set(zip(point, node, strict=True)) == set(zip(*expected, strict=True))
 
@@ -29,7 +29,7 @@ def test_nearest_are_those_of_all(resolution, count):
 def test_a_crowd_at_one_place_is_found_whole():
     nodes = np.full((100, 3), 0.25)
     grid = NodeTree(nodes, np.ones(100, bool), 64)
-    point, node = grid.nearest(np.array([[0.75, 0.5, 1.5]]), 1e-9)
+    point, node = grid.nearest(np.array([[0.75, 0.5, 1.5]]))
     assert not point.any()
     assert sorted(node) == list(range(100))
 

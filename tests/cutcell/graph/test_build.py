@@ -75,7 +75,10 @@ def test_kept_segments_equal_the_slow_ones(name, tau):
     tau = max(tau - 1e-9, 0)
     # R is a power of two: then rays meet the box's diagonals exactly, also in floats.
     graph = build_graph(mesh, 8, winding_threshold=tau, orient=False)
-    assert named_segments(graph) == named_slowly(vertices, faces, 8, tau)
+    expected = named_slowly(vertices, faces, 8, tau)
+    if name == "touching":  # where closed parts touch, one is left before the other is entered
+        expected = [ends for ends in expected if ends[0] != ends[1]]
+    assert named_segments(graph) == expected
 
 
 @settings(max_examples=10)
@@ -143,10 +146,12 @@ def test_diagonals_never_cross_a_wall():
     assert count == 2
 
 
-def test_touching_boxes_are_one_body():
-    graph = build_graph(TriangleMesh(*meshes.two_boxes_that_touch()), 16)
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
+def test_touching_boxes_are_two_bodies(connectivity):
+    mesh = TriangleMesh(*meshes.two_boxes_that_touch())
+    graph = build_graph(mesh, 16, connectivity=connectivity)
     count, _ = connected_components(graph.csr(), directed=False)
-    assert count == 1
+    assert count == 2
 
 
 @pytest.mark.parametrize("connectivity", [6, 26, "any"])

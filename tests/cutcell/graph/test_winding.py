@@ -1,5 +1,7 @@
 """The winding number equals sums of solid angles, and libigl's, everywhere."""
 
+import tracemalloc
+
 import igl
 import numpy as np
 import pytest
@@ -120,3 +122,24 @@ def test_points_of_another_shape_are_refused(points):
 def test_no_faces_no_number():
     with pytest.raises(MeshError, match="no faces"):
         TriangleMesh(np.zeros((3, 3)), np.zeros((0, 3), int))
+
+
+def test_a_fan_takes_memory_in_proportion_to_its_faces():
+    """Each of its triangles covers much of a grid."""
+    n = 8000
+    angle = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    vertices = np.concatenate([ring, [[0, 0, -0.5], [0, 0, 0.5]]])
+    i, j = np.arange(n), (np.arange(n) + 1) % n
+    faces = [np.stack([a, b, np.full(n, tip)], 1) for a, b, tip in ((j, i, n), (i, j, n + 1))]
+    mesh = TriangleMesh(vertices, np.concatenate(faces))
+    points = np.random.default_rng(0).uniform(-1, 1, (300, 3))
+    height = 0.5 - np.abs(points[:, 2]) - 0.5 * np.hypot(points[:, 0], points[:, 1])
+    tracemalloc.start()
+    try:
+        numbers = winding_number(mesh, points)
+        assert tracemalloc.get_traced_memory()[1] < 1500 * len(mesh.faces)
+    finally:
+        tracemalloc.stop()
+    off = np.abs(height) > 1e-3
+    np.testing.assert_allclose(numbers[off], height[off] > 0, atol=1e-9)

@@ -13,6 +13,7 @@ from tests.cutcell.io.fbx_builder import (
     MESH,
     binary,
     column_scene,
+    layer,
     model,
     old_text,
     prop,
@@ -301,8 +302,8 @@ def test_a_mesh_that_only_blend_shapes_move_says_so(load):
     )
     rig = load(text(scene))
     assert len(rig.skeleton.joints) == 0
-    assert sum("blend shapes" in w and "body" in w for w in rig.warnings) == 1
-    with pytest.raises(cutcell.SkeletonError, match="blend shapes"):
+    assert sum("morph targets (body)" in w for w in rig.warnings) == 1
+    with pytest.raises(cutcell.SkeletonError, match="morph targets"):
         cutcell.bind(rig)
 
 
@@ -330,3 +331,78 @@ def test_an_accessory_is_bound_when_asked_for(tmp_path):
     rig = cutcell.load(tmp_path / "a.fbx", accessories=True)
     assert [part.name for part in rig.parts] == ["body", "sword"]
     assert_allclose(rig.mesh.vertices[12:], COLUMN + REST[1] + np.array([2, 0, 0]), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "index", "width"),
+    [
+        ("UV", "UV", "UVIndex", 2),
+        ("Normal", "Normals", "NormalsIndex", 3),
+        ("Color", "Colors", "ColorIndex", 4),
+    ],
+)
+def test_a_corner_whose_number_is_minus_one_has_no_value(load, tmp_path, kind, name, index, width):
+    numbers = np.arange(FACES.size, dtype=np.int32)
+    numbers[4] = -1
+    values = np.tile(np.eye(4)[1, :width], FACES.size)
+    rows = [record(name, values), record(index, numbers)]
+    element = record("LayerElement", children=[record("Type", f"LayerElement{kind}")])
+    mesh = [layer(kind, "ByPolygonVertex", rows), record("Layer", 0, children=[element])]
+    rig = load(binary(column_scene(mesh=mesh)))
+    check(rig)
+    cutcell.save(tmp_path / "out.glb", rig)
+    again = cutcell.load(tmp_path / "out.glb").mesh.vertices
+    assert_allclose(np.unique(again, axis=0), np.unique(COLUMN, axis=0))
+
+
+def renamed(scene, names):
+    """Return records with other names in the place of some."""
+    return [
+        (
+            name,
+            tuple(names.get(v, v) if isinstance(v, str) else v for v in values),
+            tuple(renamed(children, names)),
+        )
+        for name, values, children in scene
+    ]
+
+
+SAMPLES = {
+    "cp932": ("右腕", "全ての親", "つま先"),
+    "gbk": ("左手", "根骨骼", "尾巴"),
+    "cp949": ("왼팔", "머리", "척추"),
+    "cp1251": ("Рука", "Голова", "Кость"),
+    "cp1252": ("Schädel", "Épaule", "Fuß"),
+}
+
+
+@pytest.mark.parametrize("write", [text, binary])
+@pytest.mark.parametrize("encoding", SAMPLES)
+def test_names_that_are_not_utf8_are_guessed_and_told(load, write, encoding):
+    marks = {f"Model::{old}": f"Model::{'QXZ'[k] * 20}" for k, old in enumerate(("tip", "root"))}
+    marks["AnimStack::bow"] = f"AnimStack::{'Z' * 20}"
+    data = write(renamed(column_scene(), marks))
+    for letter, name in zip("QXZ", SAMPLES[encoding], strict=True):
+        raw = name.encode(encoding)
+        data = data.replace(letter.encode() * 20, raw + b"_" * (20 - len(raw)))
+    rig = load(data)
+    names = [rig.skeleton.names[1], rig.skeleton.names[0], rig.clips[0].name]
+    assert [name.rstrip("_") for name in names] == list(SAMPLES[encoding])
+    assert sum(encoding in warning for warning in rig.warnings) == 1
+
+
+def test_a_replacement_character_is_a_letter_like_any_other(load):
+    rig = load(text(renamed(column_scene(), {"Model::tip": "Model::t\ufffdp"})))
+    assert rig.skeleton.names[1] == "t\ufffdp"
+    assert len(rig.warnings) == 1
+
+
+@pytest.mark.parametrize("method", ["DualQuaternion", "Blend", "Linear"])
+def test_dual_quaternions_are_told_once(load, method):
+    scene = column_scene()
+    skin = record("Deformer", 400, "Deformer::", "Skin", children=[record("SkinningType", method)])
+    objects = [skin if one[1][0] == 400 else one for one in scene[1][2]]
+    rig = load(text([scene[0], record("Objects", children=objects), scene[2]]))
+    check(rig)
+    warnings = [w for w in rig.warnings if "dual-quaternion skinning (body)" in w]
+    assert len(warnings) == (method != "Linear")

@@ -12,7 +12,6 @@ from cutcell.io import check_output
 from cutcell.io.files import whole_characters
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, column
 from tests.cutcell.io.gltf.test_gltf_fresh import check_valid, small_rig
-from tests.cutcell.io.gltf.test_gltf_layouts import Layout
 
 HALF = "a\ud800b"
 HIGH, LOW = "\ud83d", "\ude00"
@@ -79,14 +78,7 @@ def test_what_cannot_be_saved_is_told_before_the_work(tmp_path):
         with pytest.raises(cutcell.CutcellError, match=r"32 bits|no VRM"):
             check_output(tmp_path / name, rig)
         check_output(tmp_path / name)
-    layout = Layout()
-    layout.mesh(0)
-    layout.views.append({"buffer": 0, "byteOffset": 8, "byteLength": 10_000})
-    damaged = cutcell.load(layout.save(tmp_path / "in.gltf"))
-    with pytest.raises(cutcell.FileError, match=r"^a\.glb: .* the file is damaged"):
-        check_output(tmp_path / "a.glb", damaged)
-    check_output(tmp_path / "a.npz", damaged)
-    assert [path.name for path in tmp_path.iterdir()] == ["in.gltf"]
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 import cutcell
+from cutcell.pose import linear_blend_skinning
 from tests.cutcell.io.fbx_builder import binary, column_scene, record
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, Builder, column
+from tests.cutcell.io.gltf.test_gltf_clips import animate
 from tests.cutcell.io.test_usd import TEXT
+from tests.gltf_validator.validator import errors, reports
 
 TURN = [-np.sqrt(0.5), 0, 0, np.sqrt(0.5)]
 """From z up to y up."""
@@ -46,12 +49,21 @@ def as_fbx(folder, bones_only=False):
     scene = column_scene()
     if bones_only:
         head, objects, connections = scene
-        keep = [o for o in objects[2] if o[0] in ("Model", "NodeAttribute") and o[1][0] != 200]
+        parts = ("Model", "NodeAttribute", "Animation")
+        keep = [o for o in objects[2] if o[0].startswith(parts) and o[1][0] != 200]
         ids = {0, *(o[1][0] for o in keep)}
         links = [c for c in connections[2] if c[1][1] in ids and c[1][2] in ids]
         scene = [head, record("Objects", children=keep), record("Connections", children=links)]
     (folder / "donor.fbx").write_bytes(binary(scene))
     return folder / "donor.fbx"
+
+
+def as_moving_gltf(folder):
+    """Write the column turning about x within a second."""
+    builder = column()
+    turns = [[0, 0, 0, 1], [np.sqrt(0.5), 0, 0, np.sqrt(0.5)]]
+    animate(builder, (1, "rotation", [0, 1], turns, "LINEAR"))
+    return as_gltf(folder, builder=builder)
 
 
 def as_nodes(folder):
@@ -164,3 +176,34 @@ def test_usd(tmp_path):
     rig = cutcell.load(alone(tmp_path / "body.obj"), donor)
     assert rig.skeleton.names == ("root", "tip")
     assert_allclose(rig.skeleton.joints, REST, atol=1e-6)
+
+
+MOVING = {"fbx": as_fbx, "fbx without mesh": DONORS["fbx without mesh"], "glb": as_moving_gltf}
+
+
+@pytest.mark.parametrize(
+    ("donor", "end", "scale"),
+    [
+        *((donor, end, 1.0) for donor in MOVING for end in (".obj", ".glb")),
+        ("fbx", ".obj", 0.01),
+    ],
+)
+def test_clips_come_with_a_skeleton(tmp_path, donor, end, scale):
+    rig = cutcell.load(alone(tmp_path / f"body{end}", scale), MOVING[donor](tmp_path))
+    weights = np.zeros((12, len(rig.skeleton.names)))
+    weights[:, 1] = 1
+    cutcell.save(tmp_path / "out.glb", rig.with_weights(weights))
+    again = cutcell.load(tmp_path / "out.glb")
+    quarter = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    for one in (rig, again):
+        (clip,) = one.clips
+        moved = linear_blend_skinning(one.mesh.vertices, weights, clip.sample(clip.duration))
+        center = one.skeleton.joints[1]
+        assert_allclose(moved, (one.mesh.vertices - center) @ quarter.T + center, atol=1e-5)
+    (report,) = reports(tmp_path / "out.glb")
+    assert not errors(report)
+
+
+def test_a_file_of_a_skeleton_alone_names_the_option(tmp_path):
+    with pytest.raises(cutcell.FileError, match=r"^donor\.fbx: has no mesh, but .* --skeleton"):
+        cutcell.load(as_fbx(tmp_path, bones_only=True))

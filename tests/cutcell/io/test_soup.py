@@ -141,6 +141,9 @@ def test_other_kinds_of_files(tmp_path):
     (tmp_path / "a.blend").write_bytes(b"BLENDER-v300")
     with pytest.raises(F, match=r'a\.blend: "\.blend" cannot be read; give GLB, glTF, VRM, FBX'):
         cutcell.load(tmp_path / "a.blend")
+    (tmp_path / "a.ma").write_text("//Maya ASCII 2020 scene")
+    with pytest.raises(F, match="from Maya: export as FBX"):
+        cutcell.load(tmp_path / "a.ma")
     (tmp_path / "a.json").write_text("{}")
     with pytest.raises(F, match=r"a\.json: is not a mesh; give the mesh"):
         cutcell.load(tmp_path / "a.json")
@@ -152,3 +155,19 @@ def test_saving_needs_a_known_ending_and_a_folder(tmp_path):
         cutcell.save(tmp_path / "out.ply", rig)
     with pytest.raises(F, match=r"out\.glb: there is no folder .*nowhere"):
         cutcell.save(tmp_path / "nowhere" / "out.glb", rig)
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_lines_of_an_obj_go_on_after_a_backslash(tmp_path, newline):
+    lines = ["# of C:\\models\\", "v 0 0 \\", "  0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 \\"]
+    lines += ["\\", "3 2", "f 1 2 3 \\", "4 \\"]
+    (tmp_path / "a.obj").write_bytes(newline.join(lines).encode())
+    mesh = cutcell.load(tmp_path / "a.obj").mesh
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert len(mesh.faces) == 3
+
+
+def test_an_error_names_the_line_where_it_begins(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nf 1 \\\n  2 9\n")
+    with pytest.raises(cutcell.CutcellError, match=r"^a\.obj: line 2: vertex"):
+        cutcell.load(tmp_path / "a.obj")

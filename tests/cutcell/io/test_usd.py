@@ -259,3 +259,69 @@ def test_a_joint_with_a_good_bind_stands_there(load):
 def test_a_joint_that_holds_vertices_and_cannot_be_bound_is_refused(load):
     with pytest.raises(cutcell.SkeletonError, match='"tip" cannot be inverted'):
         load(text(tip=FLAT))
+
+
+BIG = {
+    "root": moved(*100 * REST[0]),
+    "tip": moved(*100 * REST[1]),
+    "up_one": moved(0, 100, 0),
+    "place": "( (100, 0, 0, 0), (0, 100, 0, 0), (0, 0, 100, 0), (0, 0, 0, 1) )",
+    "unit": 1,
+}
+"""Joints in centimetres, and a mesh in metres that its bind transform brings to them."""
+SMALL = """{
+    matrix4d xformOp:transform = ( (0.01, 0, 0, 0), (0, 0.01, 0, 0), (0, 0, 0.01, 0), (0, 0, 0, 1) )
+    uniform token[] xformOpOrder = ["xformOp:transform"]
+"""
+
+
+@pytest.mark.parametrize("is_applied", [True, False])
+@pytest.mark.parametrize("owner", ["Skeleton", "SkelRoot", "Mesh"])
+def test_a_bind_transform_that_scales_places_mesh_and_joints_alike(load, owner, is_applied):
+    content = text(**BIG).replace("(0, 1, 0)]", "(0, 100, 0)]")
+    head, rest = content.split(f"def {owner} ", 1)
+    content = f"{head}def {owner} {rest.replace('{', SMALL, 1)}"
+    if not is_applied:
+        content = content.replace('(prepend apiSchemas = ["SkelBindingAPI"])', "")
+    rig = load(content)
+    check(rig)
+    assert_allclose(rig.world, np.diag([100, 100, 100, 1] if owner == "Mesh" else np.ones(4)))
+
+
+def test_a_bind_transform_places_a_mesh_that_follows_no_skeleton(load):
+    rig = load(text(**BIG).replace("rel skel:skeleton", "rel other:skeleton"))
+    assert_allclose(rig.mesh.vertices[:12], COLUMN, atol=1e-6)  # the floor follows
+    assert_allclose(rig.skeleton.joints, REST, atol=1e-6)
+
+
+@pytest.mark.parametrize("purpose", ["proxy", "guide", "render", "default"])
+def test_meshes_for_other_purposes_are_left_out_and_told(load, purpose):
+    owner = 'def Mesh "floor"\n    {'
+    rig = load(text().replace(owner, f'{owner}\n        token purpose = "{purpose}"'))
+    is_out = purpose in ("proxy", "guide")
+    assert len(rig.left_out) == (not is_out)
+    assert sum("proxy" in w and "floor" in w for w in rig.warnings) == is_out
+    owner = 'def SkelRoot "Character" ()\n{'
+    content = text().replace(owner, f'{owner}\n    token purpose = "{purpose}"')
+    if is_out:
+        with pytest.raises(cutcell.FileError, match=r"has no mesh, but a skeleton.*body"):
+            load(content)
+    else:
+        check(load(content))
+
+
+def test_what_of_a_skin_is_not_read_is_listed_once(load):
+    shapes = """
+        uniform token primvars:skel:skinningMethod = "dualQuaternion"
+        uniform token[] skel:blendShapes = ["smile"]
+        rel skel:blendShapeTargets = </Character/body/smile>
+        def BlendShape "smile"
+        {
+            uniform vector3f[] offsets = [(0, 0, 1)]
+            uniform int[] pointIndices = [0]
+        }
+    """
+    rig = load(text().replace("token visibility", f"{shapes}\n        token visibility"))
+    check(rig)
+    for part in ("morph targets", "dual-quaternion skinning"):
+        assert sum(f"{part} (body)" in w for w in rig.warnings) == 1

@@ -230,10 +230,33 @@ def test_old_sets_are_removed_but_for_a_few(tmp_path, monkeypatch):
     assert {path.name for path in tmp_path.iterdir()} == left
 
 
-def test_without_a_home_there_is_no_folder_for_the_user(monkeypatch):
-    monkeypatch.setattr("platformdirs.user_cache_dir", lambda *_, **__: "~/.cache/cutcell")
+def raise_without_home(*names, **options):
+    raise RuntimeError("Could not determine home directory.")
+
+
+@pytest.mark.parametrize("cache_dir", [raise_without_home, lambda *_, **__: "~/.cache/cutcell"])
+def test_without_a_home_there_is_no_folder_for_the_user(cache_dir, monkeypatch):
+    monkeypatch.setattr("platformdirs.user_cache_dir", cache_dir)
     (folder,) = compile_cache.folders.__wrapped__()
     assert folder.parent == compile_cache.PACKAGE / "__pycache__"
     monkeypatch.setitem(vars(compile_cache.config), "CACHE_DIR", "chosen")
     chosen, _ = compile_cache.folders.__wrapped__()
     assert chosen.parent == Path("chosen").absolute()
+
+
+@pytest.mark.slow
+def test_without_the_compiler_weights_are_the_same():
+    code = """
+    import cutcell
+    from tests.bars import bar
+    weights = [cutcell.bind(bar(6), 8, connectivity=c).weights for c in (6, 26, "any")]
+    print([[f"{w + 0:.9f}" for w in each.ravel()] for each in weights])
+    """
+    outputs = [
+        subprocess.run(
+            [sys.executable, "-W", "error", "-c", textwrap.dedent(code)],
+            env={**os.environ, **options}, capture_output=True, text=True, check=True,
+        ).stdout
+        for options in ({}, {"NUMBA_DISABLE_JIT": "1"})
+    ]  # fmt: skip
+    assert outputs[0] == outputs[1] != ""

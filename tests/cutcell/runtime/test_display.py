@@ -91,6 +91,11 @@ def test_shared_prefixes_of_joints_are_dropped_and_long_names_cut_in_the_middle(
     bare = ["Hips", "Spine", "Head", "Neck"]
     full = ["Armature", *(f"mixamorig:{name}" for name in bare)]
     assert short_names(full) == ["Armature", *bare]
+    more = ["L Thigh", "R Thigh", "Spine", "Head"]
+    assert short_names(["_rootJoint", *(f"Bip001 {name}" for name in more)]) == [
+        "_rootJoint",
+        *more,
+    ]
     for whole in (["hand.L", "hand.R"], ["Bone.001", "Bone.002", "Bone.003"], [], ["a"]):
         assert short_names(whole) == whole
     long = [f"a_{'very_' * 20}long_joint_{side}" for side in "LR"]

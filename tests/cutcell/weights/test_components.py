@@ -5,7 +5,8 @@ import pytest
 
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.geodesics import Bones
-from cutcell.weights.rig_falloff.components import POINTS, bone_containment, label_components
+from cutcell.geometry.triangles import label_components
+from cutcell.weights.rig_falloff.components import POINTS, bone_containment
 from cutcell.weights.rig_falloff.containment import (
     RIGID,
     cross_component_penalty,

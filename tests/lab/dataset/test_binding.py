@@ -22,12 +22,13 @@ from cutcell.errors import CutcellError, FileError, ParameterError
 from cutcell.runtime.memory import SHARE
 from cutcell_assets.generate import KINDS, generate
 from cutcell_lab.cli.dataset import print_stretched
-from cutcell_lab.dataset.audit.report import bind_counts
+from cutcell_lab.dataset.audit.report import bind_counts, write_bind_report
 from cutcell_lab.dataset.bind import binding
 from cutcell_lab.dataset.bind.binding import bind_all, bind_isolated
 from cutcell_lab.dataset.bind.cluster import connected
 from cutcell_lab.dataset.bind.runner import AssetLostError, Runner
 from cutcell_lab.dataset.bind.work import bind_content, memory_needed, rignet_bones
+from cutcell_lab.dataset.export import export
 from cutcell_lab.dataset.read.formats import faces_of_edges
 from cutcell_lab.dataset.read.sources import Content, find_sources
 from cutcell_lab.dataset.read.store import Parameters, Store, read_entry
@@ -344,6 +345,38 @@ def test_a_second_call_keeps_the_rows_of_the_first(made, tmp_path, scheduler):
     store = Store(tmp_path / "store")
     assert [row["name"] for row in store.manifest()] == ["rig0", "rig1"]
     assert [name for name, _ in store.entries()] == ["rig0", "rig1"]
+
+
+@pytest.mark.parametrize("size", [0, 0.5, 0.99])
+def test_a_file_that_was_cut_short_is_named_and_bound_again(made, tmp_path, scheduler, size):
+    folder, store, _ = made
+    shutil.copytree(store, tmp_path / "store")
+    row = next(r for r in Store(store).manifest() if r["name"] == "rig1")
+    file, whole = tmp_path / "store" / row["path"], (store / row["path"]).read_bytes()
+    file.write_bytes(whole[: int(size * len(whole))])
+    with pytest.raises(cutcell.FileError, match=rf"^{file.name}: is damaged.* bind` again"):
+        export(tmp_path / "store", tmp_path / "out", "rignet")
+    report = bind_all([folder], tmp_path / "store", QUICK, scheduler=scheduler)
+    assert report.damaged == ("rig1",)
+    assert (report.bound, report.known) == (1, 5)
+    write_bind_report(report, tmp_path / "report.html")
+    assert file.read_bytes() == whole
+
+
+@pytest.mark.parametrize("at", [0, 40, -30])
+def test_a_file_with_wrong_bytes_is_named(made, tmp_path, at):
+    _, store, report = made
+    shutil.copytree(store, tmp_path / "store")
+    row = next(r for r in report.rows if r["name"] == "rig1")
+    file = tmp_path / "store" / row["path"]
+    data = bytearray(file.read_bytes())
+    data[at : at + 8] = b"\xff" * 8
+    file.write_bytes(data)
+    with pytest.raises(cutcell.FileError, match=rf"^{file.name}: is damaged"):
+        export(tmp_path / "store", tmp_path / "out", "rignet")
+    page = replace(report, store=tmp_path / "store")
+    write_bind_report(page, tmp_path / "report.html")
+    assert file.name in (tmp_path / "report.html").read_text()
 
 
 def test_a_change_of_the_code_makes_the_assets_of_a_store_stale(monkeypatch):

@@ -91,10 +91,9 @@ def _checked(document: Document, accessor: dict[str, Any], user: str) -> Accesso
     count = whole(accessor, "count", user)
     if count < 1:
         raise FileError(f"{user} is empty: its count is 0")
+    base = Stored(count, width, dtype, None)
     if "bufferView" in accessor:
         base = _viewed(document, accessor, count, width, dtype, user)
-    else:
-        base = Stored(count, width, dtype, None)
     document.allowance.take(count * width * BYTES_PER_NUMBER, user)
     normalized = accessor.get("normalized") is True and dtype.kind != "f"
     if "sparse" not in accessor:
@@ -138,9 +137,8 @@ def _sparse(document: Document, sparse: Any, base: Stored, user: str) -> tuple[S
     where, what = sparse.get("indices"), sparse.get("values")
     if not isinstance(where, dict) or not isinstance(what, dict):
         raise FileError(f'{user}: needs "indices" and "values"')
-    for part in (where, what):
-        if "bufferView" not in part:
-            raise FileError(f'{user}: "indices" and "values" need a "bufferView"')
+    if "bufferView" not in where or "bufferView" not in what:
+        raise FileError(f'{user}: "indices" and "values" need a "bufferView"')
     count = whole(sparse, "count", user)
     if count == 0:
         return ()

@@ -19,7 +19,7 @@ from ....rig import Attachment, TriangleMesh
 from ....runtime.display import listed
 from ..container import Document
 from ..influences import take_influences
-from ..nodes import Nodes
+from ..nodes import Nodes, target_of
 from .bones import Bones, find_bones, human_bones
 from .parts import draws_mesh, hidden_nodes, mesh_name, vanishes
 from .primitives import attributes, primitives, read_triangles
@@ -59,9 +59,7 @@ def has_volume(matrix: NDArray[np.float64]) -> bool:
     return bool(np.linalg.matrix_rank(matrix[:3, :3]) == 3)
 
 
-def add_skins(
-    document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, NDArray[np.float64]]
-) -> None:
+def add_skins(document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, NDArray]) -> None:
     """Give a skin of all joints to nodes with meshes; their matrices lead to the rig's space."""
     skins: dict[bytes, int] = {}
     used = {node["mesh"] for i, node in enumerate(nodes.raw) if "mesh" in node and i not in to_rig}
@@ -128,9 +126,9 @@ def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
     for clip in document.items("animations"):
         channels = clip.get("channels")
         for channel in channels if isinstance(channels, list) else ():
-            target = channel.get("target") if isinstance(channel, dict) else None
-            if isinstance(target, dict) and type(target.get("node")) is int:
-                (morphed if target.get("path") == "weights" else moved).add(target["node"])
+            if isinstance(channel, dict) and isinstance(channel.get("target"), dict):
+                node, path = target_of(channel)
+                (morphed if path == "weights" else moved).add(node if type(node) is int else -1)
     rigid = [i for i in meshes if set(nodes.with_ancestors([i])) & moved]
     if rigid:
         names = listed([mesh_name(document, nodes, i) for i in rigid])
@@ -154,9 +152,7 @@ def moved(points: NDArray, matrix: NDArray) -> NDArray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _hanging(
-    document: Document, nodes: Nodes, bind: Bind
-) -> Iterator[tuple[int, int, NDArray[np.float64]]]:
+def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[tuple[int, int, NDArray]]:
     """Yield nodes with a mesh without a skin below a joint, the joint, the matrix to the rig."""
     place = {node: j for j, node in enumerate(bind.nodes)}
     nearest = nodes.nearest(place)

@@ -81,12 +81,8 @@ def _listed(bones: Any) -> Iterable[tuple[Any, Any]]:
 
 def _empty(nodes: Nodes) -> set[int]:
     """Return the nodes of the scene without mesh, camera or light."""
-    empty = set()
-    for i in nodes.in_scene():
-        used = nodes.raw[i].keys() | extensions(nodes.raw[i]).keys()
-        if used.isdisjoint(NOT_EMPTY):
-            empty.add(i)
-    return empty
+    used = {i: nodes.raw[i].keys() | extensions(nodes.raw[i]).keys() for i in nodes.in_scene()}
+    return {i for i, keys in used.items() if keys.isdisjoint(NOT_EMPTY)}
 
 
 def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None) -> Bones:
@@ -95,7 +91,8 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
     for i, parent in enumerate(nodes.parents):
         if parent >= 0:
             children[parent].append(i)
-    ends, height = _ends(nodes, empty, children)
+    height = _heights(nodes, empty, children)
+    ends = set(height)
     low, high = bounds or (np.full(3, -np.inf), np.full(3, np.inf))
     diagonal = float(np.linalg.norm(high - low)) if bounds else 0.0
     places = nodes.world[:, :3, 3]
@@ -130,10 +127,8 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
     return bones
 
 
-def _ends(
-    nodes: Nodes, empty: set[int], children: dict[int, list[int]]
-) -> tuple[set[int], dict[int, int]]:
-    """Return the empty nodes above or at an empty end, and how many nodes down to the farthest."""
+def _heights(nodes: Nodes, empty: set[int], children: dict[int, list[int]]) -> dict[int, int]:
+    """Return for empty nodes above or at an empty end how many nodes down to the farthest."""
     height: dict[int, int] = {}
     has_mesh: set[int] = set()
     for level in reversed(nodes.levels):
@@ -145,7 +140,7 @@ def _ends(
             below = [height[k] for k in children[i] if k in height]
             if below or i not in has_mesh:
                 height[i] = 1 + max(below, default=0)
-    return set(height), height
+    return height
 
 
 def _below(top: int, children: dict[int, list[int]], chosen: set[int]) -> list[int]:

@@ -14,7 +14,7 @@ from ....errors import FileError
 from ....rig.clip import Clip
 from ..constants import CUBICSPLINE, INTERPOLATIONS, LINEAR, STEP
 from ..container import Document
-from ..nodes import Nodes, compose, node_shifts
+from ..nodes import Nodes, compose, node_shifts, target_of
 from .accessors import Accessor, find_accessor, read_accessor
 
 FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
@@ -65,10 +65,15 @@ class Track:
         left = np.searchsorted(self.keys, seconds, side="right") - 1
         left = left.clip(0, len(self.keys) - 1)
         right = np.minimum(left + 1, len(self.keys) - 1)
-        values = (self._keyed(left), self._keyed(right))
-        return _interpolated(
-            self.keys[left], self.keys[right], *values, self.how, seconds, self.path
-        )
+        before, a, b = self.keys[left], self._keyed(left), self._keyed(right)
+        if self.how == STEP:
+            return a
+        span = self.keys[right] - before
+        u = np.divide(seconds - before, span, out=np.zeros(len(seconds)), where=span > 0)
+        u = u.clip(0, 1)[:, None, None]
+        if self.how == CUBICSPLINE:
+            return _hermite(a, b, span[:, None, None], u)
+        return _slerp(a, b, u) if self.path == "rotation" else a * (1 - u) + b * u
 
     def _keyed(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return the values at some keys, shape (f, c, width), or (f, c, 3, width)."""
@@ -128,24 +133,27 @@ def _tracks(
     document: Document, place: dict[int, int], animation: dict[str, Any], label: str,
     key_times: dict[Any, NDArray[np.float64]],
 ) -> list[Track]:  # fmt: skip
-    """Return the channels that move a node of a subtree, by their keys, which are cached."""
+    """Return the channels that move a node of a subtree, by their keys, and check the others."""
     channels, samplers = animation.get("channels"), animation.get("samplers")
     if not isinstance(channels, list) or not isinstance(samplers, list):
         raise FileError(f'{label}: needs "channels" and "samplers"')
     groups: dict[Any, Track] = {}
     for channel in channels:
-        target = channel.get("target") if isinstance(channel, dict) else None
-        if not isinstance(target, dict):
+        if not isinstance(channel, dict) or not isinstance(channel.get("target"), dict):
             raise FileError(f'{label}: a channel has no "target"')
-        node, path = target.get("node"), target.get("path")
-        if node not in place or path not in WIDTHS:
-            continue
+        node, path = target_of(channel)
         at = channel.get("sampler")
         if type(at) is not int or not 0 <= at < len(samplers):
             raise FileError(f"{label}: a channel uses sampler {at!r} of {len(samplers)}")
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
+        if node not in place or path not in WIDTHS:
+            if path == "translation":
+                find_accessor(document, sampler.get("output"), "VEC3", label)
+                if node is not None:
+                    document.item("nodes", node, label)
+            continue
         how, index = sampler.get("interpolation", LINEAR), sampler.get("input")
         if type(index) is not int or index not in key_times:
             keys = read_accessor(document, index, "SCALAR", label)[:, 0]
@@ -229,23 +237,6 @@ class _Subtree:
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]
         return world
-
-
-def _interpolated(
-    before: NDArray, after: NDArray, left: NDArray, right: NDArray, how: str, times: NDArray,
-    path: str,
-) -> NDArray:  # fmt: skip
-    """Interpolate channels from left to right (f, c, width), between times (f,) of keys (f,)."""
-    if how == STEP:
-        return left
-    span = after - before
-    u = np.divide(times - before, span, out=np.zeros(len(times)), where=span > 0)
-    u = u.clip(0, 1)[:, None, None]
-    if how == CUBICSPLINE:
-        return _hermite(left, right, span[:, None, None], u)
-    if path == "rotation":
-        return _slerp(left, right, u)
-    return left * (1 - u) + right * u
 
 
 def _hermite(a: NDArray, b: NDArray, span: NDArray, u: NDArray) -> NDArray:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ....errors import FileError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
-from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, TRIANGLES, WIDTHS
+from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, ROUNDED, TRIANGLES, WIDTHS
 from ..container import Document, extensions, read_document, whole
 from .accessors import component
 from .primitives import attributes, primitives
@@ -158,10 +158,9 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
     job = {"data": np.frombuffer(data, np.uint8), "ends": np.cumsum([len(p) for p in pieces])}
     seconds = MIN_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
     memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
+    task, who = "cutcell.isolated.draco:decode", "the Draco decoder"
     try:
-        return run_isolated(
-            "cutcell.isolated.draco:decode", job, seconds, "the Draco decoder", memory
-        )
+        return run_isolated(task, job, seconds, who, memory)
     except WorkFailedError as e:
         raise FileError(f"its Draco compression cannot be undone: {e}") from None
 
@@ -174,16 +173,14 @@ class _Unpacking:
         self.writer = BufferWriter(document.json, document.buffers, (), views)
         self.filled: dict[int, tuple[int, str]] = {}  # by accessor, its mesh and attribute
 
-    def fill_primitive(
-        self, primitive: dict[str, Any], extension: dict[str, Any], user: str
-    ) -> None:
+    def fill_primitive(self, primitive: dict[str, Any], draco: dict[str, Any], user: str) -> None:
         """Fill a primitive's accessors; it draws plain triangles afterwards."""
-        mesh, named = self.views.index(extension["bufferView"]), primitive["attributes"]
+        mesh, named = self.views.index(draco["bufferView"]), primitive["attributes"]
         faces = self.decoded[f"faces_{mesh}"].reshape(-1, 1)
         primitive["indices"] = self._fill(primitive.get("indices"), faces, (mesh, "indices"), user)
         primitive["mode"] = TRIANGLES
         count = None
-        for name, unique in extension["attributes"].items():
+        for name, unique in draco["attributes"].items():
             values = self.decoded.get(f"values_{mesh}_{unique}")
             if values is None or name not in named:
                 raise FileError(f"{user}: {name} is not in its Draco data")
@@ -202,6 +199,8 @@ class _Unpacking:
             self.writer.accessors.append(accessor := dict(accessor))
             index = len(self.writer.accessors) - 1
         self.filled[index] = key
+        if key[1] == "POSITION":
+            accessor.setdefault("extras", {ROUNDED: True})
         values = _typed(values, accessor, name)
         target = ELEMENT_ARRAY_BUFFER if key[1] == "indices" else ARRAY_BUFFER
         self.writer.append(accessor, values, target)

@@ -1,7 +1,8 @@
-"""The meshes of a glTF document by name: those bound, those hidden, those left out."""
+"""What is left of a glTF document: meshes that are hidden, left out, and what is not read."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 import numpy as np
@@ -9,11 +10,36 @@ import numpy as np
 from ....rig import Attachment, LeftOut
 from ....runtime.display import listed
 from ..container import Document, extensions
-from ..nodes import Nodes
+from ..nodes import Nodes, target_of
 from .primitives import drawn_primitives
 
+READ = re.compile(
+    "KHR_(mesh_quantization|animation_pointer|node_visibility)|VRM.*|"
+    "[A-Z]+_(materials?|textures?|images?|lights?)_.*"
+)
+"""Extensions that are read, or change neither shapes, skins nor motion."""
 OUTSIDE = "is outside of the scene"
 NO_JOINT = "has no skin and hangs on no joint"
+
+
+def unread(document: Document) -> list[str]:
+    """Return a sentence for each kind of what is not read; channels are checked."""
+    required = document.json.get("extensionsRequired") or ()
+    paths = {str(target_of(c)[1])[:80] for a in document.items("animations") for c in a["channels"]}
+    kinds = {
+        "required extensions": [str(name) for name in required if not READ.fullmatch(str(name))],
+        "morph targets": [
+            document.label("meshes", m)
+            for m, mesh in enumerate(document.items("meshes"))
+            if any(primitive.get("targets") for primitive in mesh.get("primitives", ()))
+        ],
+        "animations of other properties than nodes have": sorted(p for p in paths if p[:1] == "/"),
+    }
+    return [
+        f"{kind} are not read ({listed(names)}): what they change is missing, and saved as it was"
+        for kind, names in kinds.items()
+        if names
+    ]
 
 
 def mesh_name(document: Document, nodes: Nodes, node: int) -> str:
@@ -83,8 +109,8 @@ def left_out_warnings(
         [one.name for one in left_out if one.why == OUTSIDE],
     )
     reasons = (
-        "move rigidly with a joint and are not bound. `cutcell bind --accessories` binds them",
-        "have no skin and hang on no joint, and are left out. `bind --accessories` binds them",
+        "move rigidly with a joint and are only bound if they are loaded as accessories",
+        "have no skin, hang on no joint, and are left out unless they are loaded as accessories",
         "are outside of the default scene, and are left out. Move them to that scene",
     )
     pairs = zip(groups, reasons, strict=True)

@@ -180,9 +180,7 @@ def read_weights(
     return read
 
 
-def joint_shares(
-    document: Document, primitive: dict[str, Any], joints: int, user: str
-) -> NDArray[np.float64]:
+def joint_shares(document: Document, primitive: dict[str, Any], joints: int, user: str) -> NDArray:
     """Return the sum of the stored weights on each joint of a skin, shape (joints,)."""
     named = attributes(primitive, user)
     shares = np.zeros(joints)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
+from ..buffer import ranges_in
+from ..constants import FLOAT, ROUNDED
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
 from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
-from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes
 from .primitives import (
     StoredFaces,
     attributes,
@@ -29,7 +31,8 @@ from .primitives import (
     read_triangles,
     read_weights,
 )
-from .skins import Bind, read_bind, read_skeleton
+from .seams import closed_seams
+from .skins import Bind, check_unused, read_bind, read_skeleton
 
 VERTEX_NAMES = ("POSITION", "JOINTS_", "WEIGHTS_")
 """Attributes of a vertex buffer; primitives that share them draw from the same."""
@@ -57,11 +60,11 @@ class GltfSource:
     inverse: NDArray[np.float64]  # (j, 4, 4): of each joint, for vertices in the rig's space
     faces: tuple[StoredFaces, ...] = ()
     attached: tuple[int, ...] = ()  # the node of each attachment
-    rescaled: NDArray[np.bool_] | None = None
-    """Vertices whose weights are saved as they were loaded, not as the document has them."""
     mended: dict[int, dict[int, NDArray[np.float64]]] = field(default_factory=dict)
     """Inverse bind matrices that contradict their nodes, as they should be: by skin, and by the
     joint's number in it."""
+    rescaled: NDArray[np.bool_] | None = None
+    """Vertices whose weights are saved as they were loaded, not as the document has them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +82,15 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
     with malformed():
         document = plain_document(path)
-        if not bare or _skinned_nodes(Nodes(document)):
-            return read_rig(document, path, accessories=accessories, has_bones=True)
-        return read_bare(document, Nodes(document), path.stem)
+        if bare and not _skinned_nodes(Nodes(document)):
+            rig = read_bare(document, Nodes(document), path.stem)
+        else:
+            rig = read_rig(document, path, accessories=accessories, has_bones=True)
+        many = ("accessors", "animations")  # which name buffers by views
+        rest = {key: value for key, value in document.json.items() if key not in many}
+        for owner in ranges_in(rest):  # saving copies them
+            document.view_range(owner, "a buffer view")
+        return replace(rig, warnings=(*unread(document), *rig.warnings))
 
 
 def read_rig(
@@ -110,15 +119,16 @@ def read_rig(
         if bones is None:
             return read_bare(document, nodes, path.stem, why)
         bind, skinned = bones, _skinned_nodes(nodes)
+    check_unused(document, bind)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
     skinned = _skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = stored.mesh()
     shape = len(mesh.vertices), len(bind.nodes)
-    weights, sums = _dense(document, parts, stored.weights, shape, rigid)
+    weights, sums = _dense(document, stored, shape, rigid)
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
     skeleton, weights, warnings = with_deform(
         mesh, read_skeleton(nodes, bind), weights, stored_deform
@@ -130,6 +140,8 @@ def read_rig(
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
     document.forget()
+    faces, shown = tuple(stored.drawn), tuple(attached)
+    source = GltfSource(document, parts, skeleton, bind.nodes, inverse, faces, shown, bind.mended)
     return Rig(
         mesh,
         skeleton,
@@ -143,16 +155,7 @@ def read_rig(
         left_out=left_out,
         warnings=(*document.warnings, *warnings),
         weight_sums=sums,
-        source=GltfSource(
-            document,
-            parts,
-            skeleton,
-            bind.nodes,
-            inverse,
-            tuple(stored.drawn),
-            tuple(attached),
-            mended=bind.mended,
-        ),
+        source=source,
     )
 
 
@@ -169,8 +172,9 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
     stored = _read_parts(document, nodes, list(placed), bind, is_bare=True)
-    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    mesh = stored.mesh()
     left_out = left_out_meshes(document, nodes, placed, ())
+    read_clips(document, nodes, [], np.zeros((0, 4, 4)), np.eye(4))  # as saving does
     document.forget()
     return Rig(
         mesh,
@@ -200,6 +204,11 @@ class _Stored(NamedTuple):
     faces: list[NDArray]
     drawn: list[StoredFaces]
     named: list[Part]
+    grids: dict[tuple[int, bytes], list[NDArray]]  # see `closed_seams`
+
+    def mesh(self) -> TriangleMesh:
+        vertices, faces = np.concatenate(self.vertices), np.concatenate(self.faces)
+        return TriangleMesh(closed_seams(vertices, faces, self.grids), faces)  # type: ignore[arg-type]
 
 
 def _read_parts(
@@ -210,7 +219,8 @@ def _read_parts(
     A mesh with two skins is read for the first: both draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
+    stored = _Stored([], [], [], [], [], [], {})
+    _, vertices, weights, faces, drawn, named, grids = stored
     hidden = hidden_nodes(nodes)
     read_meshes: set[int] = set()
     total = triangles = 0
@@ -234,6 +244,12 @@ def _read_parts(
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(moved(positions, bind.to_rig[skin]))
                 weights.append(read)
+                index, to_rig = primitive["attributes"]["POSITION"], bind.to_rig[skin]
+                accessor, by_draco = document.items("accessors")[index], {ROUNDED: True}
+                own = index if accessor.get("extras") == by_draco else -1
+                grid = grids.setdefault((own, to_rig.tobytes()), [])
+                if own >= 0 or accessor["componentType"] != FLOAT:
+                    grid.append(positions * np.linalg.norm(to_rig[:3, :3]))
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:
@@ -250,18 +266,14 @@ def _read_parts(
 
 
 def _dense(
-    document: Document,
-    parts: list[StoredPart],
-    stored: list[ReadWeights],
-    shape: tuple[int, int],
-    rigid: Mapping[int, int],
+    document: Document, stored: _Stored, shape: tuple[int, int], rigid: Mapping[int, int]
 ) -> tuple[NDArray | None, NDArray | None]:
     """Return all weights and the rows' sums in the file; `rigid` has the joints of rigid meshes."""
-    if all(read.weights is None for read in stored):
+    if all(read.weights is None for read in stored.weights):
         return None, None
     document.allowance.take_weights(*shape)
     weights, sums = np.zeros(shape), np.zeros(shape[0])
-    for part, read in zip(parts, stored, strict=True):
+    for part, read in zip(stored.parts, stored.weights, strict=True):
         if read.weights is not None and read.sums is not None:
             weights[part.rows, part.joints] = read.weights
             sums[part.rows] = read.sums

@@ -58,14 +58,12 @@ def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, 
 
 def mended_warning(names: list[str]) -> str:
     """Return the sentence about joints whose matrices were replaced, by their names."""
+    joints = f'{len(names):,} joints (the first is "{names[0]}") are'
     if len(names) == 1:
-        return (
-            f'the joint "{names[0]}" moves no vertex, and its inverse bind matrix contradicts its '
-            f"node; it is placed by its node"
-        )
+        joints = f'the joint "{names[0]}" is'
     return (
-        f"{len(names):,} joints move no vertex, and their inverse bind matrices contradict their "
-        f'nodes (the first is "{names[0]}"); they are placed by their nodes'
+        f"{joints} placed by nodes: inverse bind matrices are missing, or contradict the nodes and "
+        "move no vertex"
     )
 
 
@@ -124,17 +122,21 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
     same = np.tile(np.eye(4), (len(joints), 1, 1))
     if "inverseBindMatrices" not in owner:
         return same, False
-    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)
-    if len(stored) < len(joints):
-        raise SkeletonError(
-            f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
-        )
-    inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
-    inverse = inverse.copy()
+    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)[: len(joints)]
+    inverse = stored.astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1).copy()
     is_finite = np.isfinite(inverse).all(axis=(1, 2))
     inverse[is_finite, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
     # Several joints that all have the identity have no matrices, as far as glTF goes.
-    return inverse, len(joints) == 1 or not np.array_equal(inverse, same)
+    if len(joints) > 1 and np.array_equal(inverse, same[: len(inverse)]):
+        return same, False
+    return np.concatenate([inverse, np.nan * same[len(inverse) :]]), True
+
+
+def check_unused(document: Document, bind: Bind) -> None:
+    """Refuse damaged skins that no mesh uses: saving moves their joints, too."""
+    for skin, owner in enumerate(document.items("skins")):
+        if skin not in bind.skins and owner.get("joints"):
+            _inverse_binds(document, skin, _skin_joints(document, skin))
 
 
 @dataclass(eq=False)
@@ -172,10 +174,8 @@ def read_bind(
             to_rig = np.eye(4)
         elif shared:
             inverse = np.array([bind.inverse[place[one.nodes[k]]] for k in shared])
-            shares = one.shares[shared]
             relations = np.linalg.inv(inverse) @ one.inverse[shared]
-            shares = shares if shares.any() else np.ones(len(shared))
-            to_rig = agreed(relations, shares, one.corners)
+            to_rig = agreed(relations, one.votes(shared), one.corners)
         else:
             to_rig = np.linalg.inv(bind.world) @ _stands(one, [_votes(one, np.eye(4))])
         if not invertible(to_rig):
@@ -191,8 +191,7 @@ def read_bind(
                 if one.mended[k]:
                     mended.add(place[node])
                 if k in one.stays:
-                    stays = to_rig @ [*one.stays[k], 1.0]
-                    bind.stays[place[node]] = stays[:3]
+                    bind.stays[place[node]] = (to_rig @ [*one.stays[k], 1.0])[:3]
                 if not one.has_binds and len(one.nodes) > 1:
                     bind.unbound.add(place[node])
             elif place[node] in mended and not one.mended[k]:
@@ -209,9 +208,8 @@ def read_bind(
             k: bind.inverse[bind.skins[skin][k]] @ bind.to_rig[skin]
             for k in np.flatnonzero(one.mended).tolist()
         }
-    if mended - set(bind.stays):
+    if placed := sorted(mended - set(bind.stays)):
         names = _names(nodes, bind)
-        placed = sorted(mended - set(bind.stays))
         document.warnings.append(mended_warning([names[j] for j in placed]))
     return bind
 
@@ -224,8 +222,7 @@ def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     at_rest = np.linalg.inv(np.array(bind.inverse))
     if bind.unbound:
         by_nodes = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
-        unbound = sorted(bind.unbound)
-        at_rest[unbound] = by_nodes[unbound]
+        at_rest[list(bind.unbound)] = by_nodes[list(bind.unbound)]
     positions = at_rest[:, :3, 3]
     for j, place_of_joint in bind.stays.items():
         positions[j] = place_of_joint

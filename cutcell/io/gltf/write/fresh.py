@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .... import __version__
-from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
+from ....errors import CutcellError, MeshError, SkeletonError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...materials.corners import vertex_normals
@@ -28,8 +28,6 @@ MAX_SHIFT = 1e-3
 
 def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     """Return the files of a rig for which `check_fits` was called, coloured by its own file."""
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     buffer = with_rig_looks(*_document(rig), rig)
     return packed(buffer, Document(path, {}, []), path, {})
 
@@ -75,7 +73,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
         builder.json["nodes"][count]["matrix"] = rig.world.T.ravel().tolist()
     influences = pack_influences(rig.weights)  # type: ignore[arg-type]
     attributes = _attributes(builder, rig.mesh)
-    attributes |= store_influences(builder.buffer, influences, count)
+    attributes |= store_influences(builder.buffer, influences, count, {})
     mesh = builder.add_mesh(rig.name, attributes, rig.mesh.faces)
     binds, deform = inverses(rig.skeleton), {KEY: rig.skeleton.deform.tolist()}
     skin = builder.add_skin(list(range(count)), binds, extras=deform)
@@ -86,7 +84,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
         at_rest = _transform(binds[one.joint])
         builder.add_node({"name": one.name, "mesh": mesh, **at_rest}, one.joint)
     for clip in rig.clips:
-        _add_clip(builder, rig, clip)
+        add_clip(builder, rig, clip)
     data = builder.buffer.finish()
     return with_whole_names(builder.json), data
 
@@ -98,12 +96,13 @@ def _attributes(builder: GltfBuilder, mesh: TriangleMesh) -> dict[str, int]:
     }
 
 
-def _add_clip(builder: GltfBuilder, rig: Rig, clip: Clip) -> None:
+def add_clip(builder: GltfBuilder, rig: Rig, clip: Clip, first: int = 0) -> None:
+    """Add a clip of joints that are nodes from `first` on, see `joint_nodes`."""
     animation: dict[str, Any] = {"name": clip.name, "channels": [], "samplers": []}
     times = builder.floats(clip.times[:, None], target=None, bounds=True)
     for path, values in _local_poses(rig, clip).items():
         for j in range(values.shape[1]):
-            builder.add_track(animation, j, path, times, values[:, j])
+            builder.add_track(animation, first + j, path, times, values[:, j])
     builder.add("animations", animation)
 
 

@@ -58,11 +58,9 @@ def stored_rows(rig: Rig, part: StoredPart, saved: StoredPart) -> StoredRows:
     if source.rescaled is not None:
         is_same &= ~source.rescaled[part.rows]
     named = primitive["attributes"]
+    sets = influence_sets(named)
     joints, shares = (
-        [
-            find_accessor(document, named[f"{name}_{n}"], "VEC4", part.label).stored()
-            for n in influence_sets(named)
-        ]
+        [find_accessor(document, named[f"{name}_{n}"], "VEC4", part.label).stored() for n in sets]
         for name in ("JOINTS", "WEIGHTS")
     )
     if len(saved.joints) < len(part.joints):  # unused slots, too, may name joints that are gone

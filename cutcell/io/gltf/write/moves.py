@@ -23,7 +23,7 @@ from ....rig import Rig
 from ..buffer import BufferWriter
 from ..constants import CUBICSPLINE
 from ..container import Document
-from ..nodes import Nodes, node_shifts
+from ..nodes import Nodes, node_shifts, target_of
 from ..read.accessors import read_accessor
 
 BINDS = "inverseBindMatrices"
@@ -40,6 +40,7 @@ class NewValues:
     target: int | None = None  # of the buffer view
 
 
+@np.errstate(over="ignore")  # readers refuse what becomes infinite
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)
@@ -75,8 +76,7 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     is_moved = (new != source.skeleton.joints[old]).any(axis=1, keepdims=True)
     frames = np.linalg.inv(source.inverse)[old, :3, 3]  # a mended joint may be away from its frame
     by[old] = np.where(is_moved, new - frames, 0.0)
-    moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
-    return moved
+    return np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
 
 
 def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
@@ -95,6 +95,8 @@ def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
     count = len(stored["joints"])
     if BINDS in stored:
         values = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
+        missing = np.eye(4).reshape(1, 16).repeat(max(count - len(values), 0), axis=0)
+        values = np.concatenate([values, missing])
         if count == 1 or not (values[:count] == np.eye(4).ravel()).all():
             return values
     raise SkeletonError(
@@ -129,7 +131,7 @@ def _binds(
 ) -> list[NewValues]:
     replaced = []
     for i, skin in enumerate(document.get("skins", [])):
-        shift = frame_shifts[skin["joints"]]
+        shift = frame_shifts[skin.get("joints", [])]
         if not shift.any() and i not in mended:
             continue
         values = read_binds(loaded, i)
@@ -140,24 +142,20 @@ def _binds(
     return replaced
 
 
-def _translations(
-    document: dict[str, Any], loaded: Document, shifts: NDArray[np.float64]
-) -> list[NewValues]:
+def _translations(document: dict[str, Any], loaded: Document, shifts: NDArray) -> list[NewValues]:
     replaced = []
     for i, animation in enumerate(document.get("animations", [])):
         label = loaded.label("animations", i)
         samplers, channels = animation["samplers"], animation["channels"]
         uses = Counter(channel["sampler"] for channel in channels)
         for channel in channels:
-            target = channel["target"]
-            node = target.get("node")
-            if target.get("path") != "translation" or node is None or not shifts[node].any():
+            node, path = target_of(channel)
+            if path != "translation" or node is None or not shifts[node].any():
                 continue
             sampler = samplers[channel["sampler"]]
             if uses[channel["sampler"]] > 1:  # what moves other nodes, too, stays
-                sampler = dict(sampler)
                 channel["sampler"] = len(samplers)
-                samplers.append(sampler)
+                samplers.append(sampler := dict(sampler))
             old = sampler.pop("output")
             values = read_accessor(loaded, old, "VEC3", label).astype(np.float64)
             if sampler.get("interpolation") == CUBICSPLINE:

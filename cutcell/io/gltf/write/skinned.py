@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ....errors import WeightsError
 from ....rig import Rig
+from ..buffer import BufferWriter
+from ..builder import GltfBuilder
 from ..container import extensions
 from ..influences import store_deform
 from ..nodes import Nodes
@@ -18,7 +19,7 @@ from ..read.added_skins import add_skins
 from ..read.primitives import draws_triangles
 from ..read.read import BareSource, read_rig
 from ..read.skins import Bind
-from .fresh import inverses, joint_nodes
+from .fresh import add_clip, inverses, joint_nodes
 from .write import rewritten
 
 INSTANCES = "EXT_mesh_gpu_instancing"
@@ -27,7 +28,7 @@ INSTANCES = "EXT_mesh_gpu_instancing"
 def can_be_skinned(rig: Rig) -> bool:
     """Return whether the document that a rig's mesh came from can hold its skeleton and weights."""
     source = rig.source
-    if not isinstance(source, BareSource) or rig.clips:
+    if not isinstance(source, BareSource):
         return False
     if source.document.path.suffix.lower() not in (".glb", ".gltf"):
         return False  # what was made of another format has no more than a new document
@@ -40,8 +41,6 @@ def can_be_skinned(rig: Rig) -> bool:
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
     """Return the files of a document that gets joints and skins, and is then saved as any other."""
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source
     stored, skeleton = source.document, rig.skeleton
     copied = {"json": json.loads(json.dumps(stored.json)), "buffers": list(stored.buffers)}
@@ -53,6 +52,13 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
     bind = Bind(nodes=list(range(first, armature)), inverse=list(inverses(skeleton)))
     add_skins(document, Nodes(document), bind, source.placed)
     store_deform(document.json, bind.skins.items(), skeleton.deform)
+    if rig.clips:
+        builder = GltfBuilder("")
+        builder.json = document.json
+        builder.buffer = BufferWriter(document.json, document.buffers)
+        for clip in rig.clips:
+            add_clip(builder, rig, clip, first)
+        document.buffers = [builder.buffer.finish()]
     read = read_rig(document, stored.path)
     joints = replace(read.skeleton, deform=skeleton.deform)
     return rewritten(replace(read, skeleton=joints, weights=rig.weights), path)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ....errors import SkeletonError
 from ....rig import Rig, with_origin
-from ..nodes import Nodes
+from ..nodes import Nodes, target_of
 from ..read.read import GltfSource, StoredPart
 from .moves import BINDS, NewValues, own_moves, read_binds
 
@@ -40,18 +40,16 @@ class _Edit:
     """A document whose joints change."""
 
     def __init__(self, document: dict[str, Any], rig: Rig) -> None:
-        self.document, self.rig = document, rig
         source: GltfSource = rig.source
-        self.source = source
+        self.document, self.rig, self.source = document, rig, source
         self.nodes = Nodes(replace(source.document, json=document))
         self.parents = source.skeleton.parents
         self._base = -1
         self.inverse = source.inverse.copy()
         self.inverse[:, :3, 3] -= own_moves(rig)
-        origin = rig.origin
-        assert origin is not None
-        self.origin = origin
-        self.number = {int(f): j for j, f in enumerate(origin) if f >= 0}
+        assert rig.origin is not None
+        self.origin = rig.origin
+        self.number = {int(f): j for j, f in enumerate(rig.origin) if f >= 0}
         self.node = {j: source.nodes[f] for f, j in self.number.items()}
         """The node of each of the rig's joints."""
         self.bind = {j: self.inverse[f] for f, j in self.number.items()}
@@ -61,19 +59,17 @@ class _Edit:
         """Freeze removed joints relative to their parents."""
         removed = [f for f in range(len(self.source.nodes)) if f not in self.number]
         for f in removed:
-            node = self.source.nodes[f]
-            before = self._behind(f)
-            matrix = np.linalg.inv(before) @ self._frame_above(f) @ np.linalg.inv(self.inverse[f])
-            _set_matrix(self.document["nodes"][node], matrix)
+            frame = self._frame_above(f) @ np.linalg.inv(self.inverse[f])
+            node = self.document["nodes"][self.source.nodes[f]]
+            _set_matrix(node, np.linalg.inv(self._behind(f)) @ frame)
         frozen = {self.source.nodes[f] for f in removed}
-        for animation in self.document.get("animations", []):
+        animations = self.document.get("animations", [])
+        for animation in animations:
             animation["channels"] = [
                 channel
                 for channel in animation["channels"]
-                if channel["target"].get("node") not in frozen
-                or channel["target"].get("path") == "weights"
+                if target_of(channel)[0] not in frozen or target_of(channel)[1] == "weights"
             ]
-        animations = self.document.get("animations", [])
         animations[:] = [animation for animation in animations if animation["channels"]]
         if not animations:  # glTF has no motion of nothing
             self.document.pop("animations", None)
@@ -120,11 +116,10 @@ class _Edit:
         columns: dict[int, list[int]] = {}
         for part in source.parts:
             if part.skin not in columns:
-                columns[part.skin], new = self._skin(part, replaced)
-                replaced.append(new)
+                columns[part.skin] = self._skin(part, replaced)
         return [replace(part, joints=columns[part.skin]) for part in source.parts], replaced
 
-    def _skin(self, part: StoredPart, replaced: list[NewValues]) -> tuple[list[int], NewValues]:
+    def _skin(self, part: StoredPart, replaced: list[NewValues]) -> list[int]:
         skin, loaded = self.document["skins"][part.skin], self.source.document
         before = read_binds(loaded, part.skin)
         values = before
@@ -151,14 +146,13 @@ class _Edit:
         rows += [(self.bind[j] @ to_rig).T.ravel() for j in added]
         columns = joints + added
         skin["joints"] = [self.node[j] for j in columns]
-        new = NewValues(skin, BINDS, np.array(rows).astype("<f4"), old)
-        return columns, new
+        replaced.append(NewValues(skin, BINDS, np.array(rows).astype("<f4"), old))
+        return columns
 
     def _frame_above(self, f: int) -> NDArray[np.float64]:
         """Return the inverse bind matrix of a joint's parent; the world matrix for a root."""
         above = int(self.parents[f])
-        frame: NDArray[np.float64] = self.inverse[above] if above >= 0 else self.rig.world
-        return frame
+        return self.inverse[above] if above >= 0 else self.rig.world
 
     def _behind(self, f: int) -> NDArray[np.float64]:
         """Return the rest matrix of a joint's parent node in its parent joint, or in the scene."""

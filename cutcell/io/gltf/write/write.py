@@ -19,7 +19,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from ....errors import MeshError, SkeletonError, WeightsError
+from ....errors import FileError, MeshError, SkeletonError, WeightsError
 from ....rig import Rig
 from ...materials.gltf_colored import with_surface_looks
 from ...materials.gltf_images import carry_images
@@ -72,8 +72,6 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:
-    if rig.weights is None:
-        raise WeightsError("the rig has no weights to save; bind it first")
     remedy = "set the rig's source to None to write a new file instead"
     count = source.parts[-1].rows.stop
     if len(rig.mesh.vertices) != count:
@@ -169,9 +167,9 @@ def _buffers_of(path: Path) -> set[str]:
     """Return the real paths of the buffers of a document, if there is a readable one."""
     try:
         document = json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+        return {os.path.realpath(file) for file in _files_of(path, document, ("buffers",))}
+    except (OSError, ValueError, RecursionError, FileError):
         return set()
-    return {os.path.realpath(file) for file in _files_of(path, document, ("buffers",))}
 
 
 def _files_of(

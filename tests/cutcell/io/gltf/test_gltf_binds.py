@@ -218,6 +218,48 @@ def test_a_joint_that_another_skin_knows_better_is_taken_from_there(loaded):
     assert not rig.warnings
 
 
+def with_fewer(builder, count):
+    """Return a builder whose skin has so many matrices only."""
+    accessor = builder.json["skins"][0]["inverseBindMatrices"]
+    builder.json["accessors"][accessor]["count"] = count
+    return builder
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("offset", [(0, 0, 0), (0, 0, 3)])
+def test_joints_without_a_matrix_stand_at_their_nodes(loaded, tmp_path, count, offset):
+    rig = loaded(with_fewer(limb(offset=offset), count))  # with one, a joint holds vertices
+    places = PLACES + offset
+    assert_allclose(rig.skeleton.joints, places, atol=1e-6)
+    (warning,) = rig.warnings
+    assert f'{5 - count} joints (the first is "{rig.skeleton.names[count]}")' in warning
+    assert "missing" in warning
+    joints = places + np.linspace(0, 0.1, 15).reshape(5, 3)
+    for end, changed in ((".glb", rig), (".gltf", rig), (".glb", rig.with_joints(joints))):
+        cutcell.save(tmp_path / f"out{end}", on_end_and_far(changed))
+        again = cutcell.load(tmp_path / f"out{end}")
+        assert_allclose(again.skeleton.joints, changed.skeleton.joints, atol=1e-6)
+        world, inverse = matrices(tmp_path / f"out{end}")
+        assert len(inverse) == 5
+        is_held = again.weights.any(axis=0)
+        assert is_held.sum() == 2
+        assert_allclose((world @ inverse)[is_held], [moved(*-np.array(offset))] * 2, atol=1e-6)
+
+
+def test_with_the_identity_alone_all_joints_stand_at_their_nodes(loaded):
+    all_of_them = loaded(limb((0, 1, 2, 3, 4), np.eye(4)))
+    rig = loaded(with_fewer(limb((0, 1, 2, 3, 4), np.eye(4)), 2))
+    assert_array_equal(rig.skeleton.joints, all_of_them.skeleton.joints)
+
+
+def test_joints_are_removed_from_a_skin_with_fewer_matrices(loaded, tmp_path):
+    rig = loaded(with_fewer(limb(), 2))
+    other = cutcell.edited_rig(rig, cutcell.Edits(removed=("end",)))
+    cutcell.save(tmp_path / "out.glb", other.with_weights(np.eye(4)[[3] * 12]))
+    again = cutcell.load(tmp_path / "out.glb")
+    assert_allclose(again.skeleton.joints, PLACES[[0, 1, 3, 4]], atol=1e-6)
+
+
 def matrices(path):
     """Return the world matrices of a file's joints, and the inverse bind matrices as stored."""
     document = read_document(path)

@@ -88,6 +88,16 @@ def test_images_are_taken_into_a_binary_file(tmp_path, pictured):
     assert picture == (tmp_path / "in" / "textures" / "a b.png").read_bytes()
 
 
+def test_images_of_one_file_are_taken_in_once(tmp_path, pictured):
+    document = json.loads(pictured.read_text())
+    document["images"] += document["images"][:1] * 20
+    pictured.write_text(json.dumps(document))
+    cutcell.save(tmp_path / "out.glb", cutcell.load(pictured))
+    images = read_document(tmp_path / "out.glb").items("images")
+    assert len({image["bufferView"] for image in images if "bufferView" in image}) == 1
+    assert len(images) == 22
+
+
 def test_a_binary_file_keeps_its_image_beside_it_until_it_moves(tmp_path, pictured):
     document = json.loads(pictured.read_text())
     builder = column()

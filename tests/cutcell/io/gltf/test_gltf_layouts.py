@@ -303,10 +303,9 @@ def test_a_document_that_refers_to_bytes_that_are_not_there_is_refused(tmp_path,
     layout = Layout()
     layout.mesh(0)
     layout.views.append({"buffer": buffer, "byteOffset": 8, "byteLength": 10_000})
-    rig = cutcell.load(layout.save(tmp_path / "in.gltf"))
-    sentence = rf"out\.glb: .* refers to the bytes 8 to 10008 of buffers\[{buffer}\], which has"
+    sentence = r"in\.gltf: a buffer view (ends at byte 10008|refers to buffers\[-?1\])"
     with pytest.raises(cutcell.FileError, match=sentence):
-        cutcell.save(tmp_path / "out.glb", rig)
+        cutcell.load(layout.save(tmp_path / "in.gltf"))
 
 
 @settings(

@@ -131,7 +131,7 @@ class TestBeside:
         os.symlink(tmp_path.parent / "secret.png", tmp_path / "skin.png")
         result = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
         assert result.images == ()
-        assert "not in the folder" in result.notes[0]
+        assert "a file outside of its folder" in result.notes[0]
 
     def test_too_large_a_file_is_not_read(self, load, tmp_path):
         with (tmp_path / "skin.png").open("wb") as file:

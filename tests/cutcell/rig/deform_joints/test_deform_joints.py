@@ -1,10 +1,13 @@
 """Bones are told from controls, end markers, sockets and roots, by name and by place."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cutcell import Skeleton, SkeletonError, TriangleMesh, deform_joints
+from cutcell.rig.deform_joints import body
 from cutcell.rig.deform_joints.body import SPACING, Body
 from tests import meshes
 from tests.bars import grid_box
@@ -299,3 +302,28 @@ def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
         reports = deform_joints(mesh, Skeleton(joints[order] * mirror, above, swapped))
         assert_array_equal(reports.deform, plain.deform[order])
         assert_array_equal(reports.doubtful, plain.doubtful[order])
+
+
+def test_samples_in_blocks_are_those_of_the_whole(monkeypatch):
+    mesh = TriangleMesh(*meshes.torus())
+    whole = Body(mesh)
+    monkeypatch.setattr(body, "BLOCK", 4000)
+    blocks = Body(mesh)
+    assert_allclose(blocks.points, whole.points, atol=1e-12)
+    points = np.random.default_rng(0).random((50, 3))
+    assert_allclose(blocks.away(points), whole.away(points), atol=1e-12)
+
+
+def test_large_triangles_in_one_place_take_bounded_memory(monkeypatch):
+    """A file of a few bytes may draw its mesh any number of times."""
+    monkeypatch.setattr(body, "MAX_SAMPLES", 1_000_000)
+    corners = np.random.default_rng(0).random((6000, 3))
+    mesh = TriangleMesh(corners, np.arange(6000).reshape(-1, 3))
+    tracemalloc.start()
+    try:
+        whole = Body(mesh)
+        assert tracemalloc.get_traced_memory()[1] < 250e6
+    finally:
+        tracemalloc.stop()
+    assert len(whole.points) > 100_000
+    assert whole.to_surface(np.full((1, 3), 0.5)) < SPACING
