@@ -34,7 +34,7 @@ def test_doubtful_joints_are_named_and_may_be_left_out(run, tmp_path):
         for name, x, parent in (("hip", 0.1, None), ("knee", 0.5, "hip"), ("prop", 0.8, "knee"))
     ]
     path = write_obj(tmp_path / "leg.obj", joints=joints)
-    assert "joints that may be controls or end markers get weight: prop" in run("joints", path).stderr
+    assert "that may be controls or end markers get weight: prop" in run("joints", path).stderr
     rows = json.loads(run("joints", path, "--json").stdout)["joints"]
     assert [row["doubtful"] for row in rows] == [False, False, True]
     assert rows[2]["deform"]
