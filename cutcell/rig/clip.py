@@ -163,9 +163,8 @@ class Frames:
     def __init__(self, times: ArrayLike, transforms: ArrayLike) -> None:
         self.times = np.array(times, np.float64)
         self.transforms = np.array(transforms, np.float64)
-        count = len(self.times) if self.times.ndim == 1 else -1
         shape = self.transforms.shape
-        if len(shape) != 4 or shape[0] != count or shape[2:] != (4, 4):
+        if len(shape) != 4 or self.times.shape != shape[:1] or shape[2:] != (4, 4):
             raise ParameterError(
                 f"transforms have the shape {shape}, but times, {self.times.shape}, need "
                 "(f, j, 4, 4) for (f,)"

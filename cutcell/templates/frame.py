@@ -108,7 +108,8 @@ def mirrored(joints: Joints, size: float) -> Joints:
     gaps = [float(np.linalg.norm(joints[a] - flip * joints[b])) for a, b in pairs]
     sides = {name for pair in pairs for name in pair}
     result = {name: at if name in sides else at * flat for name, at in joints.items()}
-    for a, b in pairs if max(gaps, default=np.inf) <= ALIKE * size else ():
-        result[a] = (joints[a] + flip * joints[b]) / 2
-        result[b] = flip * result[a]
+    if max(gaps, default=np.inf) <= ALIKE * size:
+        for a, b in pairs:
+            result[a] = (joints[a] + flip * joints[b]) / 2
+            result[b] = flip * result[a]
     return result

@@ -9,8 +9,11 @@ from ..errors import SkeletonError
 from .frame import Joints
 from .interior import Interior, along, cut
 
-FINGERS = ("index", "middle", "ring", "pinky")
-NAMES = {number: (*FINGERS[: number - 1], "pinky") for number in (2, 3, 4)}
+NAMES = {
+    2: ("index", "pinky"),
+    3: ("index", "middle", "pinky"),
+    4: ("index", "middle", "ring", "pinky"),
+}
 """Names of the fingers other than the thumb, by their number."""
 MIN_LENGTH = 0.3
 """Least length of a finger, in lengths of the longest one."""
