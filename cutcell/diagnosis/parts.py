@@ -257,7 +257,7 @@ def _moves_with_the_body(
     if not on_body.any():
         return False
     points = subject.points[subject.welded[part]]
-    distance, corners = nearest_on_body(subject.graph, on_body, points)
+    distance, mean = nearest_on_body(subject.graph, on_body, points)
     touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
     of_joint = subject.weights[subject.first, joint]
-    return float(of_joint[corners[touching]].mean()) > SHARED
+    return float((mean[touching] @ of_joint).mean()) > SHARED
