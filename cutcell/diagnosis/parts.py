@@ -79,11 +79,15 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     typical = np.quantile(depth[deep], 0.5, weights=areas[far][deep], method="inverted_cdf")
     needed = ENOUGH * resolution / typical
     enough = int(np.ceil(needed / 16) * 16)
-    advice = "Paths run over their skin, which is nearly equivalent."
-    if enough > resolution:
-        advice = f"A resolution of {enough} would fill most of them."
-    texts = {"part": share(part, total), "resolution": resolution, "advice": advice}
-    yield from found("thin-parts", vertices=subject.vertices_at(thin), **texts)
+    yield from found(
+        "thin-parts",
+        vertices=subject.vertices_at(thin),
+        part=share(part, total),
+        resolution=resolution,
+        advice=f"A resolution of {enough} would fill most of them."
+        if enough > resolution
+        else "Paths run over their skin, which is nearly equivalent.",
+    )
 
 
 def _depths(
@@ -255,5 +259,5 @@ def _moves_with_the_body(
     points = subject.points[subject.welded[part]]
     distance, mean = nearest_on_body(subject.graph, on_body, points)
     touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
-    of_joint = mean @ subject.weights[subject.first, joint]
-    return float(of_joint[touching].mean()) > SHARED
+    of_joint = subject.weights[subject.first, joint]
+    return float((mean[touching] @ of_joint).mean()) > SHARED
