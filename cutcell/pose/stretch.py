@@ -75,7 +75,7 @@ class TurnedEdges(NamedTuple):
 
     def subset(self, which: NDArray[np.bool_]) -> TurnedEdges:
         """Return those for which `which`, shape (c,), is true."""
-        return TurnedEdges(*(part[which] for part in self))
+        return TurnedEdges._make(part[which] for part in self)
 
 
 def measure_stretch(

@@ -259,7 +259,7 @@ class _Guess(Joints):
         """Doubt joints that were ruled out but are far nearer to some of the skin than any bone."""
         candidates = [
             j
-            for j in np.flatnonzero(~self.deform)
+            for j in np.flatnonzero(~self.deform).tolist()
             if self.distance[j] <= MAX_OUTSIDE
             and self.kinds[j][0] != "roots"
             and not (self.kinds[j][0] == "controls" and " in " in self.kinds[j][1])
@@ -269,28 +269,30 @@ class _Guess(Joints):
         area = np.linalg.norm(self.body.areas, axis=1)
         area /= area.sum()
         nearest = np.full(len(area), np.inf)
-        for j in np.flatnonzero(self.deform):
-            nearest = np.minimum(nearest, self._to_bones(j))
-        distances = {
-            j: np.linalg.norm(self.body.points - self.joints[j], axis=1) for j in candidates
-        }
-        while distances:
-            lacking = {j: area[away < NEARER * nearest].sum() for j, away in distances.items()}
-            j = max(lacking, key=lacking.__getitem__)
-            if lacking[j] < LACKING:
+        for j in np.flatnonzero(self.deform).tolist():
+            for end in self._bone_ends(j):
+                away = distance_to_segment(self.body.points, self.joints[j], end)
+                np.minimum(nearest, away, out=nearest)
+        while candidates:
+            parts = [area[self._to_joint(j) < NEARER * nearest].sum() for j in candidates]
+            part, j = max(parts), candidates.pop(int(np.argmax(parts)))
+            if part < LACKING:
                 return
             self.deform[j] = True
-            self.doubt(j, f"nearest to {lacking[j]:.0%} of the skin, but {self.reason[j]}")
-            nearest = np.minimum(nearest, distances.pop(j))
+            self.doubt(j, f"nearest to {part:.0%} of the skin, but {self.reason[j]}")
+            nearest = np.minimum(nearest, self._to_joint(j))
 
-    def _to_bones(self, joint: int) -> NDArray[np.float64]:
-        """Measure from samples of the skin to the bones of a joint; a last one goes on as far."""
-        start, parent = self.joints[joint], self.parents[joint]
+    def _to_joint(self, joint: int) -> NDArray[np.float64]:
+        """Measure from samples of the skin (s,) to a joint."""
+        return np.linalg.norm(self.body.points - self.joints[joint], axis=1)
+
+    def _bone_ends(self, joint: int) -> NDArray[np.float64]:
+        """Return where the bones of a joint end, shape (b, 3); a last one goes on as far."""
         below = [*self.bones_below(joint)] or [*self.children[joint]]
-        beyond = 2 * start[None] - self.joints[[parent if parent >= 0 else joint]]
-        ends = self.joints[below] if below else beyond
-        starts = np.broadcast_to(start, ends.shape)
-        return distance_to_segment(self.body.points[:, None], starts, ends).min(axis=1)
+        if below:
+            return self.joints[below]
+        above = self.parents[joint] if self.parents[joint] >= 0 else joint
+        return 2 * self.joints[[joint]] - self.joints[[above]]
 
     def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
         """Return whether a link to any of the others runs through the body."""
