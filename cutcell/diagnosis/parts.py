@@ -82,8 +82,10 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     advice = "Paths run over their skin, which is nearly equivalent."
     if enough > resolution:
         advice = f"A resolution of {enough} would fill most of them."
-    texts = {"part": share(part, total), "resolution": resolution, "advice": advice}
-    yield from found("thin-parts", vertices=subject.vertices_at(thin), **texts)
+    vertices, covered = subject.vertices_at(thin), share(part, total)
+    yield from found(
+        "thin-parts", vertices=vertices, part=covered, resolution=resolution, advice=advice
+    )
 
 
 def _depths(
