@@ -79,14 +79,12 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     typical = np.quantile(depth[deep], 0.5, weights=areas[far][deep], method="inverted_cdf")
     needed = ENOUGH * resolution / typical
     enough = int(np.ceil(needed / 16) * 16)
+    advice = "Paths run over their skin, which is nearly equivalent."
+    if enough > resolution:
+        advice = f"A resolution of {enough} would fill most of them."
+    vertices, covered = subject.vertices_at(thin), share(part, total)
     yield from found(
-        "thin-parts",
-        vertices=subject.vertices_at(thin),
-        part=share(part, total),
-        resolution=resolution,
-        advice=f"A resolution of {enough} would fill most of them."
-        if enough > resolution
-        else "Paths run over their skin, which is nearly equivalent.",
+        "thin-parts", vertices=vertices, part=covered, resolution=resolution, advice=advice
     )
 
 

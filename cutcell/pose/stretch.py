@@ -75,7 +75,8 @@ class TurnedEdges(NamedTuple):
 
     def subset(self, which: NDArray[np.bool_]) -> TurnedEdges:
         """Return those for which `which`, shape (c,), is true."""
-        return TurnedEdges._make(part[which] for part in self)
+        edge, joint, before, after = self
+        return TurnedEdges(edge[which], joint[which], before[which], after[which])
 
 
 def measure_stretch(
