@@ -15,8 +15,8 @@ export function render({model}) {
       const bar = element("i")
       bar.style.width = `${100 * part}%`
       const click = () => model.send_msg({type: "row", row})
-      const point = () => model.points && model.send_msg({type: "point", row})
-      const leave = () => model.points && model.send_msg({type: "point", row: -1})
+      const point = () => model.points && model.send_msg({type: "point-row", row})
+      const leave = () => model.points && model.send_msg({type: "point-row", row: -1})
       const on = {click, mouseenter: point, focus: point, mouseleave: leave, blur: leave}
       return element("li", {}, button(
         {on}, element("span", {title: name}, name), element("b", {}, note), bar))
