@@ -126,8 +126,8 @@ def test_selections_of_the_menu(bound):
         assert selected(state).all(), "it is all of one piece"
         SELECTIONS["None"](bound)
         state.param.update(vertex=None, message=None)
-    SELECTIONS["Finding of Check"](bound)
-    assert "names no vertices" in state.message[1].lower()
+    SELECTIONS["Finding chosen in Check"](bound)
+    assert "choose one in check" in state.message[1].lower()
 
 
 def test_vertices_of_a_finding_are_selected(session, loop):
@@ -138,7 +138,7 @@ def test_vertices_of_a_finding_are_selected(session, loop):
     code = "boneless-components"
     state.param.update(panel="check", finding=code)
     assert len(state.selected_finding.vertices)
-    SELECTIONS["Finding of Check"](session)
+    SELECTIONS["Finding chosen in Check"](session)
     assert state.panel == "weights"
     assert np.array_equal(np.flatnonzero(selected(state)), state.diagnosis[code].vertices)
     # The box above the head is all of its component.

@@ -160,7 +160,7 @@ def select_finding(session: Session) -> None:
     chosen = np.zeros(len(state.rig.mesh.vertices), np.bool_)
     chosen[finding_vertices(state)] = True
     if not chosen.any():
-        session.fail(ParameterError("the finding names no vertices; choose another one in Check"))
+        session.fail(ParameterError("no finding with vertices is chosen; choose one in Check"))
         return
     state.panel = "weights"
     select(session, chosen)
@@ -221,6 +221,6 @@ SELECTIONS: dict[str, Callable[[Session], None]] = {
     "Bone and its children": select_branch,
     "Connected part": select_component,
     "Mesh of the file": select_mesh,
-    "Finding of Check": select_finding,
+    "Finding chosen in Check": select_finding,
 }
 """By their names in the menu."""
