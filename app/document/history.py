@@ -31,10 +31,11 @@ class History:
 
     def turn(self, now: Choices, without: Collection[str]) -> None:
         """Note another character: what was chosen is kept, without what only the old one has."""
-        past = [*self._past, self._now][-STEPS:]
-        self._past = [{k: v for k, v in one.items() if k not in without} for one in past]
+        self._past = [*self._past, self._now][-STEPS:]
         self._future.clear()
-        self._now, self._last = now, (frozenset(), -1e9)
+        self.drop(without)
+        self._now = now
+        self.part()
 
     def drop(self, without: Collection[str]) -> None:
         """Forget choices that only applied to the character that was open."""
@@ -87,5 +88,5 @@ class History:
             return None
         other.append(self._now)
         self._now = source.pop()
-        self._last = (frozenset(), -1e9)
+        self.part()
         return self._now

@@ -59,10 +59,7 @@ export class Colours {
   // Called before the actor is drawn.
   use(program) {
     // Values that are computed from the pose are not read from a texture.
-    if (program.isUniformUsed("points")) {
-      this.points.bind()
-      program.setUniformi("points", POINT_UNIT)
-    }
+    if (program.isUniformUsed("points")) { this.points.use(program, "points") }
     if (this.by === "values" && program.isUniformUsed("colourTable")) {
       const [low, high] = this.limits
       this.table.bind()
@@ -102,8 +99,10 @@ export class PointTexture {
     this.data.put(whole, count - whole * POINTS_WIDE, 1, format, type, values.subarray(split))
   }
 
-  bind() {
+  // Lets a program read it, by the name of its uniform.
+  use(program, name) {
     this.data.bind()
+    program.setUniformi(name, this.unit)
   }
 
   remove() {

@@ -1,7 +1,7 @@
 // Curves with a button at each point: its value is shown on hover, and a click reports it.
 
 import {make} from "./drag_handle.js"
-import {element, span} from "./elements.js"
+import {element, renew, span} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("curves.css")
@@ -16,14 +16,7 @@ const up = (y) => HEIGHT - BOTTOM - y * (HEIGHT - BOTTOM - TOP)
 /** @param {{model: Model}} widget */
 export function render({model}) {
   const figure = element("figure")
-  const fill = () => {
-    const root = /** @type {ShadowRoot} */ (figure.getRootNode())
-    const held = root.activeElement?.getAttribute("data-id")
-    figure.replaceChildren(...model.plots.flatMap((plot) => drawn(plot, model)))
-    /** @type {SVGElement | null} */
-    const point = held && figure.querySelector(`[data-id="${CSS.escape(held)}"]`)
-    point?.focus()
-  }
+  const fill = () => renew(figure, ...model.plots.flatMap((plot) => drawn(plot, model)))
   model.on("plots", fill)
   fill()
   return element("div", {}, styled(), figure)

@@ -36,6 +36,22 @@ export const focusIn = (beside) =>
   /** @type {Document | ShadowRoot | undefined} */ (beside?.getRootNode())?.activeElement
 
 /**
+ * Replace what is in an element; the focus stays with the control of the same name, or place.
+ * @param {Element} parent @param {...Node} children
+ */
+export function renew(parent, ...children) {
+  const controls = () => /** @type {NodeListOf<HTMLElement>} */ (
+    parent.querySelectorAll("button, input, [tabindex]"))
+  const nameOf = (one) => one.getAttribute("name") ?? one.dataset.id
+  const before = [...controls()]
+  const place = before.findIndex((one) => one.matches(":focus"))
+  const name = place < 0 ? null : nameOf(before[place])
+  parent.replaceChildren(...children)
+  const again = name ? [...controls()].find((one) => nameOf(one) === name) : controls()[place]
+  again?.focus()
+}
+
+/**
  * The elements that receive a key, from the innermost out. An element that was just hidden keeps
  * the focus until the next frame; its keys belong to the page, so there are none then.
  * @param {KeyboardEvent} event

@@ -1,6 +1,6 @@
 // A histogram whose bars are chosen by clicks, by dragging across them, or by keys and Shift.
 
-import {button, element, span} from "./elements.js"
+import {button, element, renew, span} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("histogram.css")
@@ -32,11 +32,10 @@ export function render({model}) {
     bars.addEventListener(type, () => { begun = null })
   }
   const fill = () => {
-    const held = [...bars.children].findIndex((one) => one.matches(":focus"))
     const most = Math.max(1, ...model.bars.map(([, count]) => count))
     bars.setAttribute("aria-label", model.label)
     bars.hidden = !model.bars.length
-    bars.replaceChildren(...model.bars.map(([range, count], i) => {
+    renew(bars, ...model.bars.map(([range, count], i) => {
       const bar = element("i")
       bar.style.height = `${count ? Math.max(100 * count / most, LOWEST) : 0}%`
       const label = `${range}: ${count.toLocaleString("en")}`
@@ -48,7 +47,6 @@ export function render({model}) {
       return button({title: label, aria: {label}, on: {click}}, bar)
     }))
     mark()
-    bars.querySelectorAll("button")[held]?.focus()
   }
   const mark = () => [...bars.children].forEach((one, i) => {
     const [first, last] = model.chosen

@@ -26,8 +26,7 @@ export class ImageLayers {
     gl.texStorage3D(gl.TEXTURE_2D_ARRAY, Math.log2(side) + 1, gl.RGBA8, side, side, layers)
     if (count) {
       const whole = [0, 0, 0, 0, side, side, count]
-      gl.texSubImage3D(
-        gl.TEXTURE_2D_ARRAY, ...whole, gl.RGBA, gl.UNSIGNED_BYTE, plain(pixels))
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, ...whole, gl.RGBA, gl.UNSIGNED_BYTE, plain(pixels))
       gl.generateMipmap(gl.TEXTURE_2D_ARRAY)
     }
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR)
@@ -67,10 +66,8 @@ export class Materials {
 
   // Called before the actor is drawn.
   use(program, images) {
-    this.corners.bind()
-    program.setUniformi("corners", CORNER_UNIT)
-    this.tints.bind()
-    program.setUniformi("tints", TINT_UNIT)
+    this.corners.use(program, "corners")
+    this.tints.use(program, "tints")
     images.bind()
     program.setUniformi("images", IMAGE_UNIT)
   }

@@ -54,7 +54,7 @@ type FromWidgets =
   | {type: 'choose-value'; name: string; value: any}  // A number in the step's text is changed.
   | {type: 'stage'; on: boolean}  // The lesson is presented or not.
   | {type: 'row'; row: number}  // A row is chosen.
-  | {type: 'point-row'; row: number}  // The pointer is over a row, or leaves it: -1.
+  | {type: 'row-point'; row: number}  // The pointer comes to a row; -1: it leaves.
   | {type: 'sort'; sort: number}  // A heading of the table of weights is clicked.
   | {type: 'page'; page: number}  // Another page of it is wanted.
   | {type: 'row-vertex'; vertex: number}  // The vertex of a row is clicked.

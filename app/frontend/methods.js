@@ -1,6 +1,6 @@
 // The table of methods: which are seen, and how good they are.
 
-import {element} from "./elements.js"
+import {element, renew} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("methods.css")
@@ -9,7 +9,6 @@ const styled = await stylesheet("methods.css")
 export function render({model}) {
   const table = element("table", {aria: {label: model.label}})
   const fill = () => {
-    const held = table.querySelector("input:focus")?.getAttribute("name")
     const columns = [[model.heading, ""], ...model.columns].map(([text, title]) =>
       element("th", {scope: "col", title}, text))
     const head = element("thead", {}, element("tr", {}, ...columns))
@@ -35,10 +34,7 @@ export function render({model}) {
         body.append(element("tr", {className: `note ${state}`}, words))
       }
     }
-    table.replaceChildren(head, body)
-    /** @type {HTMLElement | null} */
-    const box = held && table.querySelector(`input[name="${CSS.escape(held)}"]`)
-    box?.focus()
+    renew(table, head, body)
   }
   model.on("rows", fill)
   model.on("columns", fill)

@@ -1,6 +1,6 @@
 // A short list of things that can be chosen, each with a number and a bar.
 
-import {button, element} from "./elements.js"
+import {button, element, renew} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("rows.css")
@@ -9,20 +9,18 @@ const styled = await stylesheet("rows.css")
 export function render({model}) {
   const list = element("ol")
   const fill = () => {
-    const held = [...list.querySelectorAll("button")].findIndex((one) => one.matches(":focus"))
     list.setAttribute("aria-label", model.label)
-    list.replaceChildren(...model.rows.map(([name, note, part], row) => {
+    renew(list, ...model.rows.map(([name, note, part], row) => {
       const bar = element("i")
       bar.style.width = `${100 * part}%`
       const click = () => model.send_msg({type: "row", row})
-      const point = () => model.points && model.send_msg({type: "point-row", row})
-      const leave = () => model.points && model.send_msg({type: "point-row", row: -1})
+      const point = () => model.points && model.send_msg({type: "row-point", row})
+      const leave = () => model.points && model.send_msg({type: "row-point", row: -1})
       const on = {click, mouseenter: point, focus: point, mouseleave: leave, blur: leave}
       return element("li", {}, button(
         {on}, element("span", {title: name}, name), element("b", {}, note), bar))
     }))
     mark()
-    list.querySelectorAll("button")[held]?.focus()
   }
   const mark = () => list.querySelectorAll("button").forEach((one, row) => {
     one.setAttribute("aria-current", String(row === model.chosen))

@@ -129,18 +129,14 @@ export class SceneView {
     if ("images" in message) { renderer.images.set(message.images) }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of Object.entries(message.actors ?? {})) {
-      if (!renderer.actors.has(name)) {
-        renderer.actors.set(name, new Actor(renderer))
-      }
+      if (!renderer.actors.has(name)) { renderer.actors.set(name, new Actor(renderer)) }
       const actor = renderer.actors.get(name)
       actor.update(part, this.cut)
       if ("animation" in part) { actor.setFront(this.animation.front) }
     }
     if (message.bones) {
       const {start, end, joint, names} = message.bones
-      this.bones = {
-        start: [...start], end: [...end], joint: [...joint], names,
-      }
+      this.bones = {start: [...start], end: [...end], joint: [...joint], names}
     }
     if ("gizmo" in message) { this.gizmo.show(message.gizmo) }
     // While a ring is dragged the hand is ahead of the server.

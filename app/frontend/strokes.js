@@ -42,9 +42,7 @@ export class Strokes {
 
   program(kind, how) {
     const name = JSON.stringify([kind, how])
-    if (!this.programs.has(name)) {
-      this.programs.set(name, strokeProgram(this.gl, kind, how))
-    }
+    if (!this.programs.has(name)) { this.programs.set(name, strokeProgram(this.gl, kind, how)) }
     return this.programs.get(name)
   }
 
@@ -75,10 +73,8 @@ export class Strokes {
     } else {
       gl.disable(gl.BLEND)
     }
-    this.places.bind()
-    program.setUniformi("places", PLACE_UNIT)
-    this.cells.bind()
-    program.setUniformi("cells", ENDS_UNIT)
+    this.places.use(program, "places")
+    this.cells.use(program, "cells")
     program.setUniformi("every", every)
     const {camera} = renderer
     const m = projectionMatrix(camera, wide / high)

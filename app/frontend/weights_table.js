@@ -1,6 +1,6 @@
 // A table of weights: headings sort it, cells are edited, and a click on a row chooses its vertex.
 
-import {button, element} from "./elements.js"
+import {button, element, renew} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("weights_table.css")
@@ -10,7 +10,6 @@ export function render({model}) {
   const table = element("table", {aria: {label: model.label}})
   const pager = element("nav", {aria: {label: "Pages of the table"}})
   const fill = () => {
-    const held = table.querySelector(":focus")?.getAttribute("name")
     const {columns = [], rows = [], totals = [], order = [], pages = [0, 0]} = model.content
     const [sorted, down] = order
     const head = element("tr", {}, ...columns.map(([title], column) => {
@@ -33,11 +32,8 @@ export function render({model}) {
       element("th", {scope: "row"}, name),
       ...values.map((value) => element("td", {}, value.toFixed(name === "Total" ? 1 : 3)))))
     table.hidden = !columns.length
-    table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...body),
+    renew(table, element("thead", {}, head), element("tbody", {}, ...body),
       element("tfoot", {}, ...foot))
-    /** @type {HTMLElement | null} */
-    const again = held && table.querySelector(`[name="${held}"]`)
-    again?.focus()
     turn(...pages)
   }
   const cell = (vertex, value, column, [title, edited]) => {

@@ -19,7 +19,7 @@ from panel.io.resources import DIST_DIR
 from cutcell import Binding, bind
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.pose.skin import Skin
-from cutcell.rig import Rig, Skeleton
+from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
@@ -35,6 +35,7 @@ from cutcell_viewers.weights_scene import MIXED
 
 from ..document.state import State
 from ..features.character import bones_part, bounds_of, camera_part, first_joint, theme_part
+from ..features.correct.joints import in_order
 from ..features.graph.scene import build_shown
 from ..features.pose.scene import clip_part, gizmo_part
 from ..features.scenes import Memo, following, resolve
@@ -199,7 +200,7 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
             {"joint": joint, "name": shown_name(name), "color": to_hex(tuple(colors[joint]))}
             for joint, name in enumerate(skeleton.names)
         ],
-        "order": _by_depth(skeleton),
+        "order": [(joint, int(skeleton.depth[joint])) for joint in in_order(skeleton)],
         "vertices": {
             "heavy": heavy.astype(np.uint16),
             "weights": np.take_along_axis(binding.weights, heavy, axis=1),
@@ -213,16 +214,6 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
         "reasons": FALLBACK_REASONS,
         "unit": unit_of(rig),
     }
-
-
-def _by_depth(skeleton: Skeleton) -> list[tuple[int, int]]:
-    """Return each joint and its depth in the tree, parents before their children."""
-    order, waiting = [], [(j, 0) for j in np.flatnonzero(skeleton.parents < 0)[::-1].tolist()]
-    while waiting:
-        joint, depth = waiting.pop()
-        order.append((joint, depth))
-        waiting += [(child, depth + 1) for child in reversed(skeleton.children[joint])]
-    return order
 
 
 def _modules(script: str) -> dict[str, str]:

@@ -74,7 +74,7 @@ def lesson_page(lesson: Lesson | None = None, *, progress: Progress = silent) ->
         for index, step in enumerate(lesson.steps):
             progress("recording the lesson", index / len(lesson))
             recording.record(index)
-            rows.append(_row(index, step, recording.picture()))
+            rows.append(_row(index, step, recording.picture))
     finally:
         recording.recorder.close()
     packed = Packed()
@@ -106,7 +106,7 @@ class Recording:
         self.sections: list[Any] = []
         self._section_of: dict[str, int] = {}
         self.recorder.session.state.lesson = lesson
-        self._picture = ""
+        self.picture = ""  # of the last answer, in base64
 
     def record(self, index: int) -> None:
         """Record a step."""
@@ -116,7 +116,7 @@ class Recording:
         views = {"ask": self._view()}
         answer(session, "")
         views["show"] = self._view()
-        self._picture = self._draw()
+        self.picture = self._draw()
         for number in range(len(step.offers)):
             offer(session, number)
             views[f"offer {number}"] = self._view()
@@ -211,10 +211,6 @@ class Recording:
         """Return what is right to paint, by some weights, shape (n,)."""
         moves = branch_weights(self.recorder.session.state, step.answer.joint, weights) > 0.5
         return moves.astype(np.uint8)
-
-    def picture(self) -> str:
-        """Return a picture of the last answer, in base64."""
-        return self._picture
 
     def _draw(self) -> str:
         session, view = self.recorder.session, self.recorder.description

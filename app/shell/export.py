@@ -12,20 +12,18 @@ from typing import Any
 from cutcell.editing.stored import save_bound, settings_with_layers
 from cutcell.io import binary_ending
 from cutcell.pose import pose_at
-from cutcell.rig import Clip
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
 from cutcell_viewers.film import FRAMES, Order
-from cutcell_viewers.pose_scene import clip_in_scene, swing
+from cutcell_viewers.pose_scene import clip_in_scene
 from cutcell_viewers.process import draw_isolated
 
 from ..derive.jobs import COMPUTING, DRAWING, Slots
 from ..derive.processes import in_process
 from ..document.session import Session
-from ..document.state import State
-from ..features.pose.scene import SWING_DEGREES, clip_of
+from ..features.pose.scene import chosen_clip, clip_of
 from ..features.scenes import Memo, following, resolve
 from ..features.sweep import sweep_of, sweep_scenes
 from ..files.graph_numbers import save_graph
@@ -57,14 +55,8 @@ class Seen:
     def now(cls, session: Session) -> Seen:
         """Return what a session's page shows."""
         view = session.view
-        return cls(
-            session.state.snapshot(),
-            session.memo,
-            view.camera,
-            view.aspect,
-            view.page_height,
-            view.time,
-        )
+        seen = view.camera, view.aspect, view.page_height, view.time
+        return cls(session.state.snapshot(), session.memo, *seen)
 
     def posed(self) -> Description:
         """Return the scene, in the pose that a motion has come to."""
@@ -93,20 +85,15 @@ def queued(export: Callable[..., None]) -> Callable[..., None]:
 @queued
 def export_picture(session: Session, done: Done) -> None:
     """Draw what is seen, large and with its legend, and hand over the PNG."""
-    _draw(
-        session,
-        "png",
-        done,
-        lambda view_state, _: view_state.order(PICTURE_PIXELS, view_state.posed()),
-    )
+    _draw(session, "png", done, lambda seen, _: seen.order(PICTURE_PIXELS, seen.posed()))
 
 
 @queued
 def export_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
 
-    def order(view_state: Seen, progress: Progress) -> Order:
-        return replace(view_state.order(FILM_PIXELS, view_state.posed()), turntable=True)
+    def order(seen: Seen, progress: Progress) -> Order:
+        return replace(seen.order(FILM_PIXELS, seen.posed()), turntable=True)
 
     _draw(session, ending, done, order)
 
@@ -118,12 +105,9 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
 
-    def order(view_state: Seen, progress: Progress) -> Order:
-        motion = clip_in_scene(view_state.state.rig, chosen_clip(view_state.state))
-        return replace(
-            view_state.order(FILM_PIXELS, following(view_state.state, view_state.memo)),
-            motion=motion,
-        )
+    def order(seen: Seen, progress: Progress) -> Order:
+        motion = clip_in_scene(seen.state.rig, chosen_clip(seen.state))
+        return replace(seen.order(FILM_PIXELS, following(seen.state, seen.memo)), motion=motion)
 
     _draw(session, ending, done, order)
 
@@ -136,9 +120,9 @@ def export_sweep(session: Session, ending: str, done: Done) -> None:
         session.state.message = ("info", "Turn on the wavefront or a cut first.")
         return
 
-    def order(view_state: Seen, progress: Progress) -> Order:
-        scenes = sweep_scenes(view_state.state, name, rate, view_state.memo, progress)
-        return replace(view_state.order(FILM_PIXELS, scenes[-1]), scenes=scenes)
+    def order(seen: Seen, progress: Progress) -> Order:
+        scenes = sweep_scenes(seen.state, name, rate, seen.memo, progress)
+        return replace(seen.order(FILM_PIXELS, scenes[-1]), scenes=scenes)
 
     _draw(session, ending, done, order)
 
@@ -216,13 +200,6 @@ def export_bound(session: Session, done: Done) -> None:
         in_process(save_bound, path, rig, settings, check=check, ended=ENDED)
 
     _hand_over(session, f"{stem_of(session)}-bound{binary_ending(rig)}", write, done)
-
-
-def chosen_clip(state: State) -> Clip:
-    """Return the motion that is chosen, whether or not it is on."""
-    if 0 <= state.clip < len(state.rig.clips):
-        return state.rig.clips[state.clip]
-    return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
 
 
 def picture_size(pixels: int, aspect: float) -> tuple[int, int]:

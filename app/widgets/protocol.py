@@ -62,7 +62,7 @@ FROM_WIDGETS = {
     "choose-value": ("A number in the step's text is changed.", "name: string; value: any"),
     "stage": ("The lesson is presented or not.", "on: boolean"),
     "row": ("A row is chosen.", "row: number"),
-    "point-row": ("The pointer is over a row, or leaves it: -1.", "row: number"),
+    "row-point": ("The pointer comes to a row; -1: it leaves.", "row: number"),
     "sort": ("A heading of the table of weights is clicked.", "sort: number"),
     "page": ("Another page of it is wanted.", "page: number"),
     "row-vertex": ("The vertex of a row is clicked.", "vertex: number"),

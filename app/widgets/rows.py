@@ -20,7 +20,7 @@ class Rows(Clickable):
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         row = int(data["row"])
-        if data.get("type") == "point-row":
+        if data.get("type") == "row-point":
             self.pointed = row if 0 <= row < len(self.rows) else -1
         elif 0 <= row < len(self.rows):
             self.click(row)

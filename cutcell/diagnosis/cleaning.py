@@ -139,9 +139,8 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     before, after = weights.sum(axis=1), remaining.sum(axis=1)
     few = np.flatnonzero(after < MIN_REMAINING * before)
     scale = np.divide(before, after, out=np.zeros_like(before), where=after > 0)
-    cleaned = np.where(
-        (after < before * (1 - CHANGED))[:, None], remaining * scale[:, None], weights
-    )
+    is_less = after < before * (1 - CHANGED)
+    cleaned = np.where(is_less[:, None], remaining * scale[:, None], weights)
     if len(few):
         method = ANIMATION.with_options(resolution=resolution)
         binding = bind(rig, method=method, graph=subject.graph)

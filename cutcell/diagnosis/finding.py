@@ -332,6 +332,5 @@ def found(
 def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Sort findings: by severity, then in the order of `TITLES`."""
     order = list(TITLES)
-    return tuple(
-        sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
-    )
+    ranked = sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
+    return tuple(ranked)

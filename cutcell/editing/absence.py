@@ -60,7 +60,6 @@ def absence_of(
     context: Context,
     vertex: int,
     joint: int,
-    *,
     has_path: bool,
     factors: Mapping[str, float],
     steps: Mapping[str, NDArray[np.float64]],

@@ -41,7 +41,7 @@ def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
     """Return a binding with warnings about its weights and the data they were computed from."""
     distances = binding.distances
     warnings = (
-        *_of_distances(distances.graph, distances),
+        *_of_distances(distances),
         *_inferred_bones(rig, distances),
         *_weightless(rig, distances, binding.weights),
         *_stretches(rig, binding.stretch),
@@ -52,17 +52,16 @@ def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
     return warned
 
 
-def _of_distances(graph: CutCellGraph, distances: BoneDistances) -> Iterator[str]:
-    inverted = int(graph.inverted.sum())
-    if inverted:
+def _of_distances(distances: BoneDistances) -> Iterator[str]:
+    graph = distances.graph
+    if inverted := int(graph.inverted.sum()):
         yield LocatedWarning(
             f"{inverted:,} of {len(graph.inverted):,} faces are inside out and count as turned "
             "round; the mesh itself stays as it is",
             "inverted-faces",
         )
     for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
-        some = int((distances.fallback == reason).sum())
-        if some:
+        if some := int((distances.fallback == reason).sum()):
             yield LocatedWarning(
                 f"{some:,} of {len(distances.fallback):,} vertices follow their nearest bones "
                 f"in a straight line: {text}",
@@ -121,9 +120,10 @@ def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
     """Report a surface of which much stretches as joints turn."""
     if stretch.share > MAX_SHARE and stretch.joint is not None:
         place = ", ".join(f"{value:.3g}" for value in stretch.position or ())
+        name = shown_name(rig.skeleton.names[stretch.joint])
         yield LocatedWarning(
             f"{share(stretch.share, 1)} of the surface stretches or shrinks to more than twice "
-            f"when joints turn by {DEGREES:g}°, most of it with {_name(rig, stretch.joint)}, worst "
+            f'when joints turn by {DEGREES:g}°, most of it with "{name}", worst '
             f"at vertex {stretch.vertex} (at {place} in file units). Check which joints deform "
             "near there, or bind that part separately",
             "stretched-surface",
@@ -160,10 +160,6 @@ def _blocked_by_locks(rig: Rig, graph: CutCellGraph, layers: Sequence[Layer]) ->
                 f"{count(int(differs.any(axis=1).sum()), 'vertex')}: these joints are locked "
                 f"above it and keep the file's weights there: {_names(rig, keeping)}"
             )
-
-
-def _name(rig: Rig, joint: int) -> str:
-    return f'"{shown_name(rig.skeleton.names[joint])}"'
 
 
 def _names(rig: Rig, which: NDArray[np.bool_]) -> str:

@@ -117,9 +117,8 @@ def adjustments_of(
         radius[joint_index(rig.skeleton, name)] = far / graph.lattice.size
     independent = np.zeros(0, np.intp)
     if content.as_skin:
-        independent = np.unique(
-            graph.vertex_node if vertices is None else graph.vertex_node[vertices]
-        )
+        node = graph.vertex_node if vertices is None else graph.vertex_node[vertices]
+        independent = np.unique(node)
     if not len(independent) and (gain == 1).all() and np.isnan(radius).all():
         return None
     return Adjustments(gain, radius, independent)

@@ -11,11 +11,11 @@ from typing import Any, Literal
 import numpy as np
 
 from ..errors import FileError, ParameterError
-from ..rig.checks import check_choice, check_flag, check_number, one_line, shown
+from ..rig.checks import assign, check_choice, check_flag, check_kind, check_number, one_line, shown
 from ..runtime.writing import write_all
 from .layers.contents import Computed, FromFile, Rename, checked_options
 from .layers.layer import Layer
-from .layers.packing import assign, joint_names, mapping, naming, with_keys
+from .layers.packing import joint_names, mapping, naming, with_keys
 
 Base = Literal["computed", "file"]
 FARTHEST = 1e30
@@ -125,11 +125,11 @@ class Edits:
         for name, one in joints.items():
             if not isinstance(name, str):
                 raise ParameterError(f"joints go by their names, not by {shown(name)}")
-            _check_kind(f'the joint "{one_line(name)}"', one, JointEdit)
+            check_kind(f'the joint "{one_line(name)}"', one, JointEdit)
         if isinstance(self.layers, str) or not isinstance(self.layers, Sequence):
             raise ParameterError(f"layers must be a list, not {shown(self.layers)}")
         for number, layer in enumerate(self.layers, start=1):
-            _check_kind(f"layer {number}", layer, Layer)
+            check_kind(f"layer {number}", layer, Layer)
         check_choice("base", self.base, ("computed", "file"))
         removed = joint_names("removed", self.removed)
         method = checked_options("method", self.method)
@@ -255,11 +255,6 @@ def _joint(where: str, value: Any) -> JointEdit:
     entries = with_keys(where, value, [f.name for f in fields(JointEdit)])
     with naming(where):
         return JointEdit(**entries)
-
-
-def _check_kind(where: str, value: Any, kind: type) -> None:
-    if not isinstance(value, kind):
-        raise ParameterError(f"{where} must be a {kind.__name__}, not {shown(value)}")
 
 
 def _position(value: Any) -> tuple[float, ...]:

@@ -131,8 +131,7 @@ class Explanation:
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain data; infinite distances are None."""
-        data: dict[str, Any] = _finite(asdict(self))
-        return data
+        return _finite(asdict(self))
 
 
 def explain(
@@ -246,13 +245,9 @@ def _share(
     path = _path(distances, joint, vertex) if len(own) else ()
     length = sum(piece.length for piece in path) / unit
     final = list(weight.values())[-1]
-    absence = (
-        ""
-        if final > 0
-        else absence_of(
-            context, vertex, joint, has_path=bool(path), factors=factors, steps=rows, labels=STEPS
-        )
-    )
+    absence = ""
+    if not final > 0:
+        absence = absence_of(context, vertex, joint, bool(path), factors, rows, STEPS)
     return JointShare(
         joint=joint,
         name=rig.skeleton.names[joint],

@@ -44,8 +44,7 @@ def in_chunks(
 
 def limited(selected: Selected, rows: csr_array) -> csr_array:
     """Return rows (v, j) that respect the limits."""
-    chunks = _chunks(selected)
-    parts = [csr_array(part.finished(rows[which].toarray())) for which, part in chunks]
+    parts = [csr_array(part.finished(rows[which].toarray())) for which, part in _chunks(selected)]
     return csr_array(vstack(parts, format="csr"))
 
 

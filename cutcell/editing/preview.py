@@ -49,21 +49,17 @@ class Preview:
         self._distances = MovedDistances(binding.distances, method, within)
         self._falloff: _IncrementalFalloff | None = None
         if method.falloff == "rig":
-            graph, distances = binding.graph, binding.distances
-            context = Context(
-                method, graph=graph, distances=distances, adjustments=self._adjustments
-            )
+            context = Context(method, graph=binding.graph, distances=binding.distances)
+            context.adjustments = self._adjustments
             self._falloff = _IncrementalFalloff(run(RIG_STEPS[:1], context))
 
     def bind(self, rig: Rig) -> Binding:
         """Return about the binding of the rig with its joints elsewhere."""
-        distances = self._distances.measure(rig.skeleton)
+        distances, method = self._distances.measure(rig.skeleton), self._method
         if self._falloff is None:
-            weights = skinning_weights(
-                distances, method=self._method, adjustments=self._adjustments
-            )
+            weights = skinning_weights(distances, method=method, adjustments=self._adjustments)
         else:
-            options = self._method.max_influences, self._method.threshold
+            options = method.max_influences, method.threshold
             welded = keep_strongest(distances, self._falloff.weights(distances), *options)
             weights = of_vertices(distances.graph, welded)
         return replace(self._binding, distances=distances, weights=weights)

@@ -31,7 +31,12 @@ def restructured(rig: Rig, edits: Edits) -> Rig:
     old = rig.original or rig.skeleton
     skeleton, origin = restructured_skeleton(old, edits)
     if rig.origin is not None:
-        _require_applied(rig, skeleton, origin)
+        same = np.array_equal(rig.origin, origin) and skeleton.names == rig.skeleton.names
+        if not same or not np.array_equal(skeleton.parents, rig.skeleton.parents):
+            raise ParameterError(
+                f"{rig.name} already has other edits of its joints; apply all edits at "
+                "once to the rig as it was loaded"
+            )
         return rig
     removed = ~np.isin(np.arange(len(old.joints)), origin)
     heir = _heirs(old, removed)
@@ -44,36 +49,19 @@ def restructured(rig: Rig, edits: Edits) -> Rig:
     allowed = rig.allowed
     if allowed is not None:
         allowed = allowed[:, [max(int(origin[j]), 0) for j in with_origin(skeleton, origin)]]
-    unmoved = np.zeros((len(origin), 3))
+    after = old.parents, skeleton.parents, origin, np.zeros((len(origin), 3))
     return replace(
         rig,
         skeleton=skeleton,
         weights=weights,
         allowed=allowed,
-        clips=tuple(
-            Clip(
-                clip.name,
-                motion=Rebased(clip.motion, old.parents, skeleton.parents, origin, unmoved),
-            )
-            for clip in rig.clips
-        ),
+        clips=tuple(Clip(one.name, motion=Rebased(one.motion, *after)) for one in rig.clips),
         attachments=tuple(
             replace(one, joint=int(number[heir[one.joint]])) for one in rig.attachments
         ),
         origin=origin.astype(np.int32),
         original=old,
     )
-
-
-def _require_applied(rig: Rig, skeleton: Skeleton, origin: NDArray[np.int_]) -> None:
-    """Refuse edits that make another skeleton (j,) of a rig's original one than it has."""
-    same = rig.origin is not None and np.array_equal(rig.origin, origin)
-    same = same and skeleton.names == rig.skeleton.names
-    if not same or not np.array_equal(skeleton.parents, rig.skeleton.parents):
-        raise ParameterError(
-            f"{rig.name} already has other edits of its joints; apply all edits at "
-            "once to the rig as it was loaded"
-        )
 
 
 def restructured_skeleton(old: Skeleton, edits: Edits) -> tuple[Skeleton, NDArray[np.int_]]:

@@ -27,7 +27,6 @@ from .skeletons import with_skeleton
 
 __all__ = ["load", "save"]
 
-GLTF = ENDINGS
 READABLE = (
     "GLB, glTF, VRM, FBX, USD, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, "
     "OFF"
@@ -35,7 +34,7 @@ READABLE = (
 EXPORTED = {kind: ("Maya", "FBX") for kind in (".ma", ".mb")} | {".max": ("3ds Max", "FBX")}
 """Programs of formats that only they can read, and what they export."""
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
-SAVED = (*GLTF, ".txt", ".npz")
+SAVED = (*ENDINGS, ".txt", ".npz")
 """The endings that `save` takes."""
 AVATAR = ("VRM", "VRMC_vrm")
 """Extensions of a document that make it a VRM."""
@@ -97,7 +96,7 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
         return read_rignet(rig) if rig else read_soup(path, bare)
     if kind in SCENES:
         return read_scene(path, accessories)
-    if kind in GLTF or read_bytes(path)[:4] == MAGIC:
+    if kind in ENDINGS or read_bytes(path)[:4] == MAGIC:
         return read_gltf(path, accessories, bare)
     if kind == ".json":
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
@@ -181,7 +180,7 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
 
 def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:
     """Say what `save` leaves out of the colours of a rig's file, in sentences."""
-    if path.suffix.lower() not in GLTF or keeps_document(rig):
+    if path.suffix.lower() not in ENDINGS or keeps_document(rig):
         return ()
     return color_notes(rig)
 
@@ -203,7 +202,7 @@ def keeps_document(rig: Rig) -> bool:
     """Return whether a rig is saved as the glTF document that it came from, materials and all."""
     source = rig.source
     if isinstance(source, GltfSource):
-        return source.document.path.suffix.lower() in GLTF  # not made of an FBX or USD file
+        return source.document.path.suffix.lower() in ENDINGS  # not made of an FBX or USD file
     return can_be_skinned(rig)
 
 

@@ -102,11 +102,8 @@ def _parents(arrays: dict[str, NDArray], count: int) -> NDArray:
         parents[child] = parent
     if "root_index" in arrays:
         root = arrays["root_index"]
-        if (
-            root.size != 1
-            or root.dtype.kind not in "iu"
-            or not 0 <= (k := int(root.flat[0])) < count
-        ):
+        k = int(root.flat[0]) if root.size == 1 and root.dtype.kind in "iu" else -1
+        if not 0 <= k < count:
             raise SkeletonError(f"root_index must be one joint number, 0 to {count - 1}")
         if parents[k] >= 0:
             raise SkeletonError(f"joint {k} is the root but hangs on joint {parents[k]}")

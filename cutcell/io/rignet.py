@@ -134,8 +134,7 @@ def _weights(
 
 def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
     """Return the two files of a rig, given the path of the rig file (``.txt``)."""
-    skeleton = rig.skeleton
-    names = word_names(skeleton.names)
+    skeleton, names = rig.skeleton, word_names(rig.skeleton.names)
     lines = [
         f"joints {n} {x!r} {y!r} {z!r}"
         for n, (x, y, z) in zip(names, skeleton.joints.tolist(), strict=True)
@@ -149,9 +148,9 @@ def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
             if pairs:
                 lines.append(f"skin {i} {pairs}")
     text = "\n".join(lines) + "\n"
-    obj = _mesh_goal(path)
-    mesh = {} if check_mesh_file(path, rig.mesh) else {obj: write_obj(rig.mesh).encode()}
-    return {**mesh, path: text.encode()}
+    if check_mesh_file(path, rig.mesh):
+        return {path: text.encode()}
+    return {_mesh_goal(path): write_obj(rig.mesh).encode(), path: text.encode()}
 
 
 def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:

@@ -92,8 +92,8 @@ def sum_warnings(sums: NDArray | None, faces: NDArray, parts: Iterable[Part]) ->
 KEY = "cutcell_deform"
 """Under which a saved file stores for each joint whether it deforms: a joint that got no weight
 still does."""
-STRAY = 1e-3
-"""Part of all weight: a control that carries less was given it by mistake."""
+FOLLOWED = 0.25
+"""Weight that some vertex of the file must give to a joint for it to deform."""
 
 
 def with_deform(
@@ -175,16 +175,14 @@ def _inferred(
                 f"{_names(skeleton, guess.doubtful)}; exclude those that move no skin"
             )
         return guess.deform, warnings
-    share = weights.sum(axis=0) / total
-    carries = share > 0
-    stray = carries & (share < STRAY)
-    if stray.any():
-        stray &= ~deform_joints(mesh, skeleton).deform
-    if not stray.any():
-        return carries, []
-    return carries & ~stray, [
-        f"the file's weights give under {STRAY:.1%} to {_names(skeleton, stray)}: taken for "
-        "controls, which get no weight"
+    strongest = weights.max(axis=0)
+    deform = strongest >= FOLLOWED * min(1.0, strongest.max())
+    weak = ~deform & (strongest > 0)
+    if not weak.any():
+        return deform, []
+    return deform, [
+        f"no vertex follows {_names(skeleton, weak)} by {FOLLOWED:.0%} in the file: taken for "
+        "helpers or controls, which get no weight"
     ]
 
 

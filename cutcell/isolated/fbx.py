@@ -34,8 +34,9 @@ def read(data):
     for node in nodes:
         parent = place[p.element_id] if (p := node.parent) else -1
         is_bone = node.attrib_type == ufbx.ElementType.BONE
-        local = transform(node.local_transform)
-        scene.add_node(label(node), parent, local, not node.visible, is_bone)
+        local = node.local_transform
+        row = [*local.translation, *local.rotation, *local.scale]
+        scene.add_node(label(node), parent, row, not node.visible, is_bone)
     for mesh in kept(file.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
@@ -80,11 +81,6 @@ def matrix(columns):
     return full
 
 
-def transform(one):
-    """Return translation, rotation (x, y, z, w) and scale in a row, shape (10,)."""
-    return [*one.translation, *one.rotation, *one.scale]
-
-
 def geometry(mesh):
     """Return a mesh's arrays, the corners of its triangles by its own numbers, and the polygons."""
     vertices = np.array(list(mesh.vertex_indices), int)
@@ -102,11 +98,10 @@ def geometry(mesh):
 
 def dropped(mesh):
     """Return what of a mesh is not read."""
+    skinned = [skin.skinning_method for skin in kept(mesh.skin_deformers)]
     parts = {
         "morph targets": len(mesh.blend_deformers),
-        "dual-quaternion skinning": any(
-            skin.skinning_method in DUAL for skin in kept(mesh.skin_deformers)
-        ),
+        "dual-quaternion skinning": any(method in DUAL for method in skinned),
         "texture coordinates after the first set": len(mesh.uv_sets) > 1,
         "vertex colours after the first set": len(mesh.color_sets) > 1,
         "tangents": mesh.vertex_tangent.exists,

@@ -63,8 +63,7 @@ def run_isolated(
         with np.load(result_path) as result:
             arrays = {name: result[name] for name in result.files}
     if "missing" in arrays:
-        advice = f"try: pip install '{extra}'"
-        raise WorkFailedError(f"{arrays['missing']} is not installed; {advice}")
+        raise WorkFailedError(f"{arrays['missing']} is not installed; try: pip install '{extra}'")
     if "failed" in arrays:
         raise WorkFailedError(str(arrays["failed"]))
     return arrays

@@ -81,9 +81,9 @@ class Scene:
             "material_uses": np.array([row[3:5] for row in rows], int).reshape(-1, 2),
             "image_files": np.array([names for names, _ in self._images], np.str_).reshape(-1, 3),
         }
-        images = {f"image_{k}_content": one for k, one in self._images.values()}
-        contents = {name: np.frombuffer(one, np.uint8) for name, one in images.items()}
-        return arrays | contents | self._mesh_arrays
+        for k, content in self._images.values():
+            arrays[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
+        return arrays | self._mesh_arrays
 
 
 def upper_left(uv):

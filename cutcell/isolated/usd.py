@@ -91,10 +91,9 @@ class Stage:
             for target in binding.GetSkinningTargets():
                 self.bound[target.GetPrim().GetPath()] = (target, query, first)
         for prim in self.prims if not bindings else ():  # no mesh follows a skeleton
-            if prim.IsA(UsdSkel.Skeleton):
-                query = self.cache.GetSkelQuery(UsdSkel.Skeleton(prim))
-                if query:
-                    self.add_joints(query)
+            skeleton = UsdSkel.Skeleton(prim)
+            if skeleton and (query := self.cache.GetSkelQuery(skeleton)):
+                self.add_joints(query)
 
     def add_joints(self, query):
         """Add a skeleton's joints; return the number of the first node."""

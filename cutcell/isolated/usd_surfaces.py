@@ -31,10 +31,7 @@ def surface(prim, faces, corners, polygons, scene, file):
         members = np.array(subset.GetIndicesAttr().Get() or [], int)
         subset_material = number(UsdShade.MaterialBindingAPI(subset.GetPrim()), scene, file)
         material[np.isin(polygons, members)] = subset_material
-    arrays: dict[str, np.ndarray] = {
-        "materials": material,
-        "dropped": dropped(prim, primvars, sets),
-    }
+    arrays = {"materials": material, "dropped": dropped(prim, primvars, sets)}
     normals = corner_normals(UsdGeom.Mesh(prim), primvars, triangles)
     if normals is not None:
         arrays["normals"] = normals.astype(np.float32)
@@ -66,11 +63,9 @@ def corner_normals(mesh, primvars, triangles):
 def number(binding, scene, file):
     """Return the number of the bound material, -1 for none that can be shown."""
     material = binding.ComputeBoundMaterial()[0]
-    return (
-        scene.material(material.GetPath(), lambda: describe(material, scene, file))
-        if material
-        else -1
-    )
+    if not material:
+        return -1
+    return scene.material(material.GetPath(), lambda: describe(material, scene, file))
 
 
 def describe(material, scene, file):

@@ -75,8 +75,7 @@ class TurnedEdges(NamedTuple):
 
     def subset(self, which: NDArray[np.bool_]) -> TurnedEdges:
         """Return those for which `which`, shape (c,), is true."""
-        edge, joint, before, after = self
-        return TurnedEdges(edge[which], joint[which], before[which], after[which])
+        return TurnedEdges(*(part[which] for part in self))
 
 
 def measure_stretch(
@@ -121,16 +120,10 @@ def measure_stretch(
     worst = int(np.bincount(joint, amount[edge]).argmax())
     change = np.where((joint == worst)[:, None], np.abs(after - before), -1.0)
     row, axis = divmod(int(change.argmax()), len(turns))
-    ends = edges[edge[row]]
+    ends, part = edges[edge[row]], float(amount[stretched].sum() / amount.sum())
     x, y, z = graph.lattice.to_file(graph.nodes[ends].mean(axis=0)).tolist()
-    return Stretch(
-        float(amount[stretched].sum() / amount.sum()),
-        worst,
-        "xyz"[axis],
-        int(vertex[ends[0]]),
-        (x, y, z),
-        np.unique(vertex[edges[stretched]]),
-    )
+    place, vertices = (x, y, z), np.unique(vertex[edges[stretched]])
+    return Stretch(part, worst, "xyz"[axis], int(vertex[ends[0]]), place, vertices)
 
 
 def _is_stretched(turned: TurnedEdges) -> NDArray[np.bool_]:
@@ -207,9 +200,8 @@ def turned_edges(
         difference = rows.take(start, axis=1)
         difference -= rows.take(end, axis=1)
         np.abs(difference, out=difference)
-        row, edge = np.divmod(
-            np.flatnonzero(difference > needed / longest * before), max(len(start), 1)
-        )
+        likely = np.flatnonzero(difference > needed / longest * before)
+        row, edge = np.divmod(likely, max(len(start), 1))
         middle = (points[start[edge]] + points[end[edge]]) / 2
         lever = _lengths(middle - joints[turned[row]])
         is_much = difference[row, edge] * lever > needed * before[edge]

@@ -140,6 +140,18 @@ def as_array(
     return array
 
 
+def assign(target: Any, **values: Any) -> None:
+    """Set fields of a frozen dataclass, as its `__post_init__` does with checked values."""
+    for name, value in values.items():
+        object.__setattr__(target, name, value)
+
+
+def check_kind(where: str, value: Any, kind: type) -> None:
+    """Refuse a value of another type."""
+    if not isinstance(value, kind):
+        raise ParameterError(f"{where} must be a {kind.__name__}, not {shown(value)}")
+
+
 def frozen(array: NDArray) -> NDArray:
     """Return an array after making it read-only."""
     array.flags.writeable = False

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
+from .checks import assign
 from .transforms import composed, relative
 
 
@@ -101,8 +102,7 @@ class Clip(Derived):
         framed = times is not None and transforms is not None
         if framed == (motion is not None) or (times is None) != (transforms is None):
             raise ParameterError("a clip needs times and transforms, or else a motion")
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "motion", motion or Frames(times, transforms))  # type: ignore[arg-type]
+        assign(self, name=name, motion=motion or Frames(times, transforms))  # type: ignore[arg-type]
 
     @property
     def transforms(self) -> NDArray[np.float64]:
@@ -163,9 +163,8 @@ class Frames:
     def __init__(self, times: ArrayLike, transforms: ArrayLike) -> None:
         self.times = np.array(times, np.float64)
         self.transforms = np.array(transforms, np.float64)
-        count = len(self.times) if self.times.ndim == 1 else -1
         shape = self.transforms.shape
-        if len(shape) != 4 or shape[0] != count or shape[2:] != (4, 4):
+        if len(shape) != 4 or self.times.shape != shape[:1] or shape[2:] != (4, 4):
             raise ParameterError(
                 f"transforms have the shape {shape}, but times, {self.times.shape}, need "
                 "(f, j, 4, 4) for (f,)"

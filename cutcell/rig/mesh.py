@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import MeshError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..runtime.repr import Summarized
-from .checks import as_array, check_choice, check_finite, frozen
+from .checks import as_array, assign, check_choice, check_finite, frozen
 
 COUNTS = ("welded", "vertices")
 
@@ -57,8 +57,7 @@ class TriangleMesh(Summarized):
         used = vertices[np.unique(faces)]
         if (used == used[0]).all():
             raise MeshError("all faces of the mesh lie in one point; it has no extent")
-        object.__setattr__(self, "vertices", frozen(vertices))
-        object.__setattr__(self, "faces", frozen(faces.astype(np.int32)))
+        assign(self, vertices=frozen(vertices), faces=frozen(faces.astype(np.int32)))
 
     @property
     def _summary(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
 from ..runtime.repr import Summarized
-from .checks import as_array, frozen
+from .checks import as_array, assign, frozen
 from .clip import Clip
 from .mesh import TriangleMesh
 from .skeleton import Skeleton
@@ -169,16 +169,16 @@ class Rig(Summarized):
                 weights = weights.copy()
                 weights[is_off] = normalised(weights[is_off])
                 if self.weight_sums is None:
-                    object.__setattr__(self, "weight_sums", frozen(sums))
-            object.__setattr__(self, "weights", frozen(weights))
+                    assign(self, weight_sums=frozen(sums))
+            assign(self, weights=frozen(weights))
         if self.allowed is not None:
             allowed = as_array(self.allowed, np.bool_, shape, "allowed", WeightsError)
-            object.__setattr__(self, "allowed", frozen(allowed))
+            assign(self, allowed=frozen(allowed))
         if self.origin is not None:
             origin = as_array(self.origin, np.int64, shape[1:], "origin", SkeletonError)
-            object.__setattr__(self, "origin", frozen(origin.astype(np.int32)))
+            assign(self, origin=frozen(origin.astype(np.int32)))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
-            object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
+            assign(self, parts=(Part(self.name, slice(0, shape[0])),))
         check_units(self.skeleton, self.mesh.bounds)
 
     @property

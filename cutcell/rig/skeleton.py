@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError
 from ..runtime.repr import Summarized
-from .checks import as_array, check_finite, frozen, shown
+from .checks import as_array, assign, check_finite, frozen, shown
 from .names import is_neutral
 
 LONG_CYCLE = 10
@@ -91,11 +91,9 @@ class Skeleton(Summarized):
             axes = as_array(self.orientations, np.float64, shape, "orientations", SkeletonError)
             if not np.isfinite(axes).all():
                 raise SkeletonError("an orientation holds a number that is not finite")
-            object.__setattr__(self, "orientations", frozen(axes))
-        object.__setattr__(self, "joints", frozen(joints))
-        object.__setattr__(self, "parents", frozen(parents.astype(np.int32)))
-        object.__setattr__(self, "names", names)
-        object.__setattr__(self, "deform", frozen(deform))
+            assign(self, orientations=frozen(axes))
+        assign(self, joints=frozen(joints), parents=frozen(parents.astype(np.int32)))
+        assign(self, names=names, deform=frozen(deform))
 
     @property
     def _summary(self) -> dict[str, Any]:

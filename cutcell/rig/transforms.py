@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 def relative(transforms: NDArray, parents: NDArray) -> NDArray[np.float64]:
     """Return transforms (..., j, 4, 4) relative to those of the parents (j,); roots' stay."""
     local, lower = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
-    local[..., lower, :, :] = (
-        inverses(transforms[..., parents[lower], :, :]) @ local[..., lower, :, :]
-    )
+    back = inverses(transforms[..., parents[lower], :, :])
+    local[..., lower, :, :] = back @ local[..., lower, :, :]
     return local
 
 

@@ -130,9 +130,8 @@ def _lock(name: str, stack: ExitStack) -> None:
 
 def is_complete() -> bool:
     """Return whether all functions of a binding are in the cache, or none is to be compiled."""
-    return bool(vars(config)["DISABLE_JIT"]) or any(
-        os.path.exists(folder / COMPLETE) for folder in folders()
-    )
+    is_off = bool(vars(config)["DISABLE_JIT"])
+    return is_off or any(os.path.exists(folder / COMPLETE) for folder in folders())
 
 
 @cache
@@ -154,9 +153,8 @@ def mark_complete() -> None:
         return
     with suppress(OSError):
         others = [path for path in folder.parent.glob("kernels-*") if path != folder]
-        for old in sorted(others, key=lambda path: path.stat().st_mtime, reverse=True)[
-            MAX_OLD_SETS:
-        ]:
+        others.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+        for old in others[MAX_OLD_SETS:]:
             shutil.rmtree(old, ignore_errors=True)
 
 
@@ -198,24 +196,16 @@ def folders() -> tuple[Path, ...]:
     return tuple(Path(base, _set_name()) for base in bases)
 
 
-def _processor() -> tuple[str, str]:
-    """Return the processor that functions are compiled for, by name and features.
+@cache
+def _set_name() -> str:
+    """Name the set of functions by compiler, processor and sources.
 
     With NUMBA_CPU_NAME=generic they run on all processors of a kind, as those of a container must.
     """
-    settings = vars(config)
-    features = settings["CPU_FEATURES"]
-    return (
-        settings["CPU_NAME"] or binding.get_host_cpu_name(),
-        get_host_cpu_features() if features is None else features,
-    )
-
-
-@cache
-def _set_name() -> str:
-    """Name the set of functions by compiler, processor and sources."""
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
-    processor = sys.platform, *_processor()
+    name, features = vars(config)["CPU_NAME"], vars(config)["CPU_FEATURES"]
+    features = get_host_cpu_features() if features is None else features
+    processor = sys.platform, name or binding.get_host_cpu_name(), features
     parts = repr((compiler, processor, source_digest(PACKAGE)))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"
 

@@ -21,12 +21,9 @@ OWN_CGROUP = Path("/proc/self/cgroup")
 
 def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
     """Raise an error if weights of some vertices and joints do not fit in memory."""
+    what = f"weights of {vertices:,} vertices for {joints:,} joints"
     needed = float(vertices) * joints * copies * BYTES_PER_WEIGHT
-    check_room(
-        needed,
-        f"weights of {vertices:,} vertices for {joints:,} joints",
-        "leave out vertices or joints",
-    )
+    check_room(needed, what, "leave out vertices or joints")
 
 
 def check_room(needed: float, what: str, advice: str) -> None:

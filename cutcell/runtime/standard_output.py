@@ -66,9 +66,8 @@ def _open() -> _Output:
     if before is None:  # closed: a file that can only be read takes its number, and fails likewise
         closed = os.fdopen(os.open(os.devnull, os.O_RDONLY), "wb")
         return _Output(closed, "utf-8")
-    return _Output(
-        before.buffer, before.encoding, ESCAPED, line_buffering=bool(before.line_buffering)
-    )
+    by_line = bool(before.line_buffering)
+    return _Output(before.buffer, before.encoding, ESCAPED, line_buffering=by_line)
 
 
 @contextmanager

@@ -104,11 +104,8 @@ def cancellable(work: Callable[[Progress], Result], progress: Progress, first_st
     second, and passes on at once what `progress` raises. The work then ends at its next report,
     with no one waiting for it. While `MAX_ABANDONED` such threads run, new work waits.
     """
-    if (
-        progress is silent
-        or getattr(_thread, "is_worker", False)
-        or getattr(_thread, "is_run", False)
-    ):
+    is_inner = getattr(_thread, "is_worker", False) or getattr(_thread, "is_run", False)
+    if progress is silent or is_inner:
         return work(progress)
     relay, result = _Relay(progress, first_stage), Future[Result]()
     context = copy_context()
@@ -169,11 +166,7 @@ def parts(count: int, at_once: int = 0) -> list[slice]:
 
 @cache
 def _pool(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count, "cutcell", initializer=_mark_worker)
-
-
-def _mark_worker() -> None:
-    _thread.is_worker = True
+    return ThreadPoolExecutor(count, "cutcell", setattr, (_thread, "is_worker", True))
 
 
 # A forked process would inherit the pool, but none of its threads.

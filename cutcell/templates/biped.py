@@ -65,16 +65,12 @@ def place(body: Interior) -> Joints:
     top = points[head]
     joints["head"] = base + 0.25 * (top - base)
     for side in "LR":
-        wrist, elbow, shoulder = arms[side]
+        joints[f"hand.{side}"], joints[f"forearm.{side}"], shoulder = arms[side]
         joints[f"upper_arm.{side}"] = shoulder
-        joints[f"forearm.{side}"] = elbow
-        joints[f"hand.{side}"] = wrist
         inner = 0.35 * joints["chest"] + 0.65 * base
         joints[f"shoulder.{side}"] = inner + 0.25 * (shoulder - inner)
         leg = _leg(body, feet[side], hips, hip_height, robe, 1 if side == "L" else -1)
         joints |= {f"{name}.{side}": at for name, at in leg.items()}
-    for name in TRUNK:
-        joints[name] = joints[name] * [0.0, 1.0, 1.0]
     return mirrored(joints, body.height)
 
 
@@ -112,13 +108,10 @@ def _leg(
     low = (y < SOLE * body.height) & (sign * points[:, 0] > 0)
     ground = points[sole]
     toes = points[low] if low.any() else ground[None]
-    toe_tip = np.quantile(toes[:, 2], 0.98)
-    heel = np.quantile(toes[:, 2], 0.02)
-    ankle = ground.copy()
-    ankle[1] = body.floor + max(ANKLE * height, 0.02 * body.height)
-    top = hips.copy()
-    top[0] = 0.8 * ground[0]
-    top[1] = body.floor + height
+    heel, toe_tip = np.quantile(toes[:, 2], [0.02, 0.98])
+    ankle_height = max(ANKLE * height, 0.02 * body.height)
+    ankle = np.array([ground[0], body.floor + ankle_height, ground[2]])
+    top = np.array([0.8 * ground[0], body.floor + height, hips[2]])
     if robe:
         knee = ankle + (KNEE - ANKLE) / (1 - ANKLE) * (top - ankle)
     else:
@@ -133,9 +126,8 @@ def _leg(
         outer = abs(ground[0]) + 0.05 * body.height
         top[0] = sign * np.clip(sign * top[0], 0.03 * body.height, outer)
     ankle[2] = min(ankle[2], heel + 0.5 * (toe_tip - heel))
-    toe = ground.copy()
-    toe[2] = heel + 0.72 * (toe_tip - heel)
-    toe[1] = body.floor + 0.3 * (ankle[1] - body.floor)
+    toe_height = body.floor + 0.3 * (ankle[1] - body.floor)
+    toe = np.array([ground[0], toe_height, heel + 0.72 * (toe_tip - heel)])
     return {"thigh": top, "shin": knee, "foot": ankle, "toe": toe}
 
 
@@ -147,7 +139,4 @@ def _middle_at(body: Interior, height: float) -> NDArray[np.float64]:
     middle = near & (np.abs(points[:, 0]) < 0.1 * np.abs(points[:, 0]).max() + body.cell)
     if not middle.any():
         middle = near if near.any() else np.ones(len(points), np.bool_)
-    point = points[body.deepest(middle)].copy()
-    point[1] = height + body.floor
-    point[0] = 0.0
-    return point
+    return np.array([0.0, height + body.floor, points[body.deepest(middle), 2]])

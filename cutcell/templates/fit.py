@@ -120,7 +120,7 @@ def _chain(body: Interior, names: tuple[str, ...]) -> Joints:
     start = int(body.distances(0).argmax())
     end = int(body.distances(start).argmax())
     path = body.middle_path(start, end)
-    inset = 0.5 / len(names) if len(names) > 1 else 0.5
+    inset = 0.5 / len(names)
     shares = np.linspace(0.3 * inset, 1 - inset, len(names))
     if _thickness(body, end) > _thickness(body, start):
         path = path[::-1]

@@ -47,12 +47,12 @@ def standing(nodes: NDArray[np.float64], *, tall: bool) -> NDArray[np.float64]:
     """
     extent = np.ptp(nodes, axis=0)
     side = mirror_axis(nodes)
-    others = [axis for axis in (1, 2, 0) if axis != side]  # y is up in most files, then z
-    up = others[0]
-    if tall and extent[others[1]] * CLEARLY > extent[up]:
-        up = others[1]
-    if not tall and _feet(nodes, others[1]) > _feet(nodes, up) / CLEARLY:
-        up = others[1]
+    up, other = (axis for axis in (1, 2, 0) if axis != side)  # y is up in most files, then z
+    if tall:
+        is_other = extent[other] * CLEARLY > extent[up]
+    else:
+        is_other = _feet(nodes, other) > _feet(nodes, up) / CLEARLY
+    up = other if is_other else up
     front = 3 - side - up
     axes = np.zeros((3, 3))
     axes[1, up] = 1
@@ -94,23 +94,22 @@ def _looks_back(points: NDArray[np.float64], tall: bool) -> bool:
         middle = (points[low, 2].min() + points[low, 2].max()) / 2
         return bool(middle - np.median(points[shin, 2]) < -0.02 * total)
     high = points[height > 0.85 * height.max()]  # the head is above the front legs
-    legs = points[height < 0.2 * height.max()]
-    middle = (legs[:, 2].min() + legs[:, 2].max()) / 2
-    return bool(np.median(high[:, 2]) < middle)
+    legs = points[height < 0.2 * height.max(), 2]
+    return bool(np.median(high[:, 2]) < (legs.min() + legs.max()) / 2)
 
 
 def mirrored(joints: Joints, size: float) -> Joints:
     """Return joints in a frame whose x is 0 in the middle, those of left and right alike.
 
-    Joints are returned unchanged if the two sides have different poses.
+    Left and right are returned unchanged if they have different poses.
     """
-    flip = np.array([-1.0, 1.0, 1.0])
+    flip, flat = np.array([-1.0, 1.0, 1.0]), np.array([0.0, 1.0, 1.0])
     pairs = [(name, f"{name[:-2]}.R") for name in joints if name.endswith(".L")]
     gaps = [float(np.linalg.norm(joints[a] - flip * joints[b])) for a, b in pairs]
-    if max(gaps, default=np.inf) > ALIKE * size:
-        return joints
-    result = {name: place * [0.0, 1.0, 1.0] for name, place in joints.items()}
-    for a, b in pairs:
-        result[a] = (joints[a] + flip * joints[b]) / 2
-        result[b] = flip * result[a]
+    sides = {name for pair in pairs for name in pair}
+    result = {name: at if name in sides else at * flat for name, at in joints.items()}
+    if max(gaps, default=np.inf) <= ALIKE * size:
+        for a, b in pairs:
+            result[a] = (joints[a] + flip * joints[b]) / 2
+            result[b] = flip * result[a]
     return result

@@ -43,8 +43,7 @@ def place(body: Interior) -> Joints:
         raise SkeletonError(
             "no three fingers were found in the mesh; choose another template, such as chain"
         )
-    tips = sorted(tips, key=lambda tip: -lengths[tip])[:5]
-    tips = _in_order(body, wrist, tips)
+    tips = _in_order(body, wrist, sorted(tips, key=lambda tip: -lengths[tip])[:5])
     palm = body.deepest(body.distances(wrist) < 0.6 * min(body.distances(wrist)[tips]))
     joints: Joints = {"hand": along(body.middle_path(wrist, palm), np.array([0.15]))[0]}
     for name, tip in zip(("thumb", *NAMES[len(tips) - 1]), tips, strict=True):
@@ -90,12 +89,12 @@ def _ends(body: Interior) -> tuple[int, list[int]]:
     for tip in sorted(tips, key=lambda tip: -far[tip]):
         if all(body.branch(tip, other, centre) > MIN_OF_HAND / 2 * far.max() for other in fingers):
             fingers.append(tip)  # none of a finger whose tip is known
-    ways = body.points - body.points[centre]
-    ways = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)
+    from_centre = body.points - body.points[centre]
+    ways = from_centre / np.maximum(np.linalg.norm(from_centre, axis=1, keepdims=True), 1e-9)
     for _ in range(2):  # without what is on the wrist's side
         out = np.median(ways[fingers], axis=0)  # whatever the thumb does
         fingers = [tip for tip in fingers if ways[tip] @ out > BACK * np.linalg.norm(out)]
-    along_out = (body.points - body.points[centre]) @ out
+    along_out = from_centre @ out
     end = np.flatnonzero(along_out < along_out.min() + 2 * body.cell)
     return body.nearest(body.points[end].mean(axis=0)), fingers
 
@@ -112,9 +111,7 @@ def _climbed(body: Interior, far: NDArray[np.float64], node: int) -> int:
 
 def _in_order(body: Interior, wrist: int, tips: list[int]) -> list[int]:
     """Return the tips from the thumb to the little finger."""
-    points = body.points[tips]
-    start = body.points[wrist]
-    ways = points - start
+    ways = body.points[tips] - body.points[wrist]
     out = ways.mean(axis=0)
     out /= np.linalg.norm(out)
     flat = ways - np.outer(ways @ out, out)

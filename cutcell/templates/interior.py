@@ -34,19 +34,15 @@ class Interior:
         self.graph, self.axes, self.origin = graph, axes, origin
         self.cell = 1 / graph.lattice.resolution
         connected = np.flatnonzero(np.diff(graph.csr().indptr) > 0)
-        self.points = self.to_frame(graph.nodes[connected])
+        in_cube = graph.nodes[connected]
+        self.points = np.asarray((in_cube - origin) @ axes.T)
         self._lengths = _bridged(csr_array(graph.csr()[connected][:, connected]), self.points)
         kind = graph.node_kind[connected]
         # In the unit cube, where it lies along the lattice: a tree of that is quicker to search.
-        in_cube = graph.nodes[connected]
         self._skin = cKDTree(in_cube[kind == (SURFACE if (kind == SURFACE).any() else MESH)])
         # Mesh vertices are skin wherever they are: a cape has no other nodes.
         self.depth = np.where(kind == INTERIOR, self._skin.query(in_cube)[0], 0.0)
         self._distances: dict[int, NDArray[np.float64]] = {}
-
-    def to_frame(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Bring points (..., 3) from the unit cube into the frame."""
-        return np.asarray((points - self.origin) @ self.axes.T)
 
     def to_file(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Bring points (..., 3) from the frame into the file's units."""

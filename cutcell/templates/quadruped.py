@@ -48,10 +48,8 @@ def place(body: Interior) -> Joints:
             far = body.branch(foot, feet[end, opposite], feet[other, side])
             far = max(far, 0.25 * away[foot])
             path = cut(body, foot, belly, min(LEG[-1] * far, 0.9 * away[foot]))
-            ankle, knee, top = along(path, LEG / LEG[-1])
-            joints[f"{end}foot.{side}"] = ankle
-            joints[f"{end}shin.{side}"] = knee
-            joints[f"{end}thigh.{side}"] = top
+            names = [f"{end}{name}.{side}" for name in ("foot", "shin", "thigh")]
+            joints |= zip(names, along(path, LEG / LEG[-1]), strict=True)
         tops[end] = (joints[f"{end}thigh.L"] + joints[f"{end}thigh.R"]) / 2
     hips, chest = (_inner(body, middle, tops[end]) for end in ("", "front_"))
     spine = body.middle_path(hips, chest)
@@ -67,8 +65,6 @@ def place(body: Interior) -> Joints:
     tail = _end(off_legs, behind)  # nodes on the path to a foot are no tail
     path = body.middle_path(hips, tail)
     joints |= zip(TAIL, along(path, np.array([0.35, 0.57, 0.78])), strict=True)
-    for name in (*TRUNK, *TAIL):
-        joints[name] = joints[name] * [0.0, 1.0, 1.0]
     return mirrored(joints, float(np.ptp(points, axis=0).max()))
 
 
@@ -82,6 +78,4 @@ def _inner(body: Interior, middle: NDArray[np.bool_], top: NDArray[np.float64]) 
     """Return the deepest node between two legs, in the middle of the trunk."""
     near = middle & (np.abs(body.points[:, 2] - top[2]) < 2 * body.cell)
     near &= body.points[:, 1] > top[1] - 2 * body.cell
-    if not near.any():
-        return body.nearest(top * [0.0, 1.0, 1.0])
-    return body.deepest(near)
+    return body.deepest(near) if near.any() else body.nearest(top * [0.0, 1.0, 1.0])

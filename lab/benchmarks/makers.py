@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 MAKERS = {
+    "abbott_": "danielabbott",
     "adan_": "Adan",
     "adv_": "Kay Lousberg",
+    "almaral_": "Denys Almaral",
     "babylon": "Babylon.js",
+    "bamba_": "Bamba_Negra",
     "barav_": "BaraV",
     "boxman": "J. Blaha",
     "bubba": "Hasksoft",
+    "creator_": "creator830",
+    "darby_": "Elyse Darby",
     "dcl_": "Decentraland",
+    "deok_": "Quaternius",
+    "djmaesen_": "DJMaesen",
     "duck_": "Friendl-e-Duck",
+    "duznot_": "Duznot",
+    "elefante_": "planeta-elefante",
     "emoji": "Microsoft",
     "flock_": "Flip Computing",
+    "gentry_": "Christian Gentry",
     "godette": "SirRichard94",
     "godot": "Godot",
     "godot_hand": "Godot XR",
@@ -21,6 +31,8 @@ MAKERS = {
     "goon_": "MrGoonAndWatch",
     "greenman": "@iP",
     "hackmit": "HackMIT",
+    "hiukim_": "hiukim",
+    "jungle_": "Jungle Jim",
     "kaykit": "Kay Lousberg",
     "khronos": "Khronos",
     "leap_": "Leap Motion",
@@ -28,6 +40,7 @@ MAKERS = {
     "makehuman": "MakeHuman",
     "mannyquin": "Cat Prisbrey",
     "minnyquinn": "Cat Prisbrey",
+    "mujib_": "Mujib",
     "neither_": "NeitherDucks",
     "nofil_": "Nofil.Khan",
     "norah_": "N. van Nimwegen",
@@ -36,12 +49,16 @@ MAKERS = {
     "pablo_": "Pablo444",
     "packt": "Packt",
     "phoenix": "NORBERTO-3D",
+    "picasty_": "Picasty",
     "pmndrs_low_poly_horse": "unknown (horse)",
     "pmndrs_skater": "Kenney",
     "polyme": "W. Yip",
     "pumpkin_": "outcast945",
+    "quat": "Quaternius",
     "ramirez_": "M. Ramirez",
     "red_panda": "galiulinEldar",
+    "rukh_": "Rukh3D",
+    "schwaab_": "Mateus Schwaab",
     "space_survivor": "s.probka",
     "stakler_": "Stakler",
     "sumerian_": "Amazon",
@@ -50,14 +67,28 @@ MAKERS = {
     "uxr_": "VRMADA",
     "valve_": "Valve",
     "webxr": "Amazon",
+    "wu_": "Clement Wu",
+    "yuki_": "yukikoooo",
 }
 """By the beginnings of names; the longest that fits counts."""
 VALID = ("AIAN", "Asian", "Black", "Hispanic", "MENA", "White", "X_", "valid")
+PACK = "_pack__"
+"""In names of the train set: Quaternius, as `modular_men` and `modular_women`."""
 
 
 def maker_of(name: str) -> str:
-    """Return the maker of a character; most of those of the train set are by Quaternius."""
+    """Return the maker of a character.
+
+    Raises
+    ------
+    KeyError
+        A name whose maker is not listed.
+    """
     if name.startswith(VALID):
         return "VALID"
+    if PACK in name or name.startswith("modular_"):
+        return "Quaternius"
     fitting = [start for start in MAKERS if name.startswith(start)]
-    return MAKERS[max(fitting, key=len)] if fitting else "Quaternius"
+    if not fitting:
+        raise KeyError(f"{name}: add its maker to {__file__}")
+    return MAKERS[max(fitting, key=len)]

@@ -107,23 +107,14 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     progress(name, 0.0)
     if name == NOW:
         weights, seconds = binding.weights, binding.seconds
-    elif is_settings(name):
-        try:
-            setting = bind_setting(rig, settings(name), binding, lambda *_: progress(name, 0.5))
-        except CutcellError as error:
-            return Compared(None, visible_text(str(error)))
-        weights, seconds = setting.weights, setting.seconds
     else:
         try:
-            method = METHODS[name]
-            with stoppable(lambda: progress(name, 0.0)):
-                options = known_options(method, resolution=resolution, progress=progress)
-                result = method(rig, **options)
+            result = _result(rig, name, binding, resolution, progress)
         except CutcellError as error:
             return Compared(None, visible_text(str(error)))
-        if result.weights is None:
-            return Compared(None, visible_text(result.failed), float(sum(result.seconds.values())))
         weights, seconds = result.weights, result.seconds
+        if weights is None:
+            return Compared(None, visible_text(result.failed), float(sum(seconds.values())))
     progress(name, 0.9)
     share = vertex_shares(rig.mesh)
     total, none = float(sum(seconds.values())), unweighted(weights, share)
@@ -132,6 +123,15 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     errors = deformation_error(rig, weights, rig.weights, progress=lambda *_: progress(name, 0.9))
     l1 = weight_l1(weights, rig.weights, share)
     return Compared(weights, "", total, l1, errors.mean, none, errors)
+
+
+def _result(rig: Rig, name: str, binding: Any, resolution: int, progress: Progress) -> Any:
+    """Return the weights of a method or of settings, and their seconds."""
+    if is_settings(name):
+        return bind_setting(rig, settings(name), binding, lambda *_: progress(name, 0.5))
+    method = METHODS[name]
+    with stoppable(lambda: progress(name, 0.0)):
+        return method(rig, **known_options(method, resolution=resolution, progress=progress))
 
 
 def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:

@@ -10,7 +10,7 @@ from cutcell.editing import Edits, JointEdit, Painted, edited_rig
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.deform_joints import DeformJoints, deform_joints
+from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import shown_name
 
 from ...document.method import chosen_by, stored_method
@@ -96,10 +96,9 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
         session.refuse(ParameterError("no joint is left that may carry weight; keep at least one"))
         return
     edited = dict(state.edits.joints)
-    for joint, name in enumerate(state.rig.skeleton.names):
-        override = (
-            None if deform[joint] == state.own_skeleton.deform[joint] else bool(deform[joint])
-        )
+    own = state.own_skeleton.deform.tolist()
+    for name, on, before in zip(state.rig.skeleton.names, deform.tolist(), own, strict=True):
+        override = None if on == before else on
         edited[name] = replace(edited.get(name, JointEdit()), deform=override)
     correct(session, replace(state.edits, joints=edited))
 
@@ -107,11 +106,7 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
 def guess(session: Session, done: Any) -> None:
     """Guess from names and places which joints deform; `done` is called with a `DeformJoints`."""
     rig = session.state.rig
-
-    def work(progress: Any) -> DeformJoints:
-        return deform_joints(rig.mesh, rig.skeleton)
-
-    session.work.newest("deform", work, done)
+    session.work.newest("deform", lambda progress: deform_joints(rig.mesh, rig.skeleton), done)
 
 
 def correct_part(session: Session, vertices: Collection[int], content: Content | None) -> None:
@@ -148,8 +143,7 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
 
 def uses_file(session: Session) -> bool:
     """Return whether the layers begin from the file's weights."""
-    edits = session.state.edits
-    return bool(edits.base == "file")
+    return bool(session.state.edits.base == "file")
 
 
 def choose_file(session: Session, from_file: bool) -> None:
@@ -210,8 +204,7 @@ def stored(session: Session) -> bytes:
 
 def file_name(session: Session) -> str:
     """Return the name of the file of edits."""
-    stem = safe_name(session.state.rig.name).rsplit(".", 1)[0]
-    return f"{stem}.layers.json"
+    return f"{safe_name(session.state.rig.name).rsplit('.', 1)[0]}.layers.json"
 
 
 def open_text(session: Session, text: str) -> None:

@@ -135,7 +135,5 @@ def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]
     label = label_components(links, graph.first_point)[graph.vertex_node]
     sizes = np.bincount(label)
     order = np.argsort(-sizes, kind="stable")
-    rank = np.empty(len(order), int)
-    rank[order] = np.arange(len(order))
     present = sizes[order] > 0
-    return rank[label], sizes[order][present]
+    return np.argsort(order)[label], sizes[order][present]

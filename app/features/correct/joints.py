@@ -53,7 +53,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     for joint in in_order(skeleton):
         name = skeleton.names[joint]
         one = state.edits.joints.get(name, JointEdit())
-        is_locked, reach = name in locked, state.edits.reach
+        reach = state.edits.reach
         holds = 0.0 if original is None else float(original[joint])
         control = guess is not None and not guess.deform[joint] and holds < STRAY
         doubtful = guess is not None and original is None and bool(guess.doubtful[joint])
@@ -71,7 +71,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
                 "changed": one.deform is not None,
                 "ours": None if computed is None else float(computed[joint]),
                 "file": None if original is None else float(original[joint]),
-                "locked": is_locked,
+                "locked": name in locked,
                 "gain": reach.gain.get(name, 1.0),
                 "radius": reach.radius.get(name),
             }

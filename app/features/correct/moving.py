@@ -129,10 +129,8 @@ def moved(session: Session, place: ArrayLike) -> Edits:
         name, rest = state.rig.skeleton.names[one], state.own_skeleton.joints[one]
         before = edited.get(name, JointEdit())
         same = np.array_equal(np.round(at, digits), np.round(rest, digits))
-        position = (
-            None if same and not before.added else tuple(round(x, digits) for x in at.tolist())
-        )
-        edited[name] = replace(before, position=position)
+        position = tuple(round(x, digits) for x in at.tolist())
+        edited[name] = replace(before, position=None if same and not before.added else position)
     edits = replace(state.edits, joints=edited)
     edited_rig(state.own, edits)
     return edits
@@ -172,9 +170,7 @@ class Hand:
         except CutcellError as error:
             self.release()
             session.fail(error)
-            session.view.send(
-                mover=session.view.last_sent("mover")
-            )  # back from where it was dragged
+            session.view.send(mover=session.view.last_sent("mover"))  # where it was before
             return
         if not message.get("done"):
             if session.engine.is_fresh("bound"):  # else the last position is about to be bound

@@ -10,7 +10,7 @@ from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
 from ...derive.derived import Derived
-from ...derive.jobs import DESCRIBING, Slots
+from ...derive.jobs import DESCRIBING
 from ...document.state import State
 from ..weights.results import bind_as_chosen, layered, wide_options
 
@@ -33,12 +33,7 @@ def _preview_inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _preview(
-    binding: Binding,
-    rig: Rig,
-    edits: Edits,
-    previewer: Preview,
-    recomputed: Any,
-    progress: Progress,
+    binding: Any, rig: Rig, edits: Edits, previewer: Preview, recomputed: Any, progress: Progress
 ) -> Binding:
     return layered(rig, previewer.bind(rig), edits, recomputed)
 
@@ -49,10 +44,6 @@ def _exact_preview(
     return bind_as_chosen(state, rig, edits, binding.graph, progress)
 
 
-def _describing(state: State) -> Slots:
-    return DESCRIBING
-
-
 RESULTS = (
     Derived(
         "previewer",
@@ -61,14 +52,14 @@ RESULTS = (
         # Vertices at one place may follow different joints: there is no quick preview.
         wanted=lambda state: state.moved is not None and state.rig.allowed is None,
         more=lambda state: (state.rig, state.snapshot()),
-        slots=_describing,
+        slots=lambda state: DESCRIBING,
     ),
     Derived(
         "preview",
         _preview_inputs,
         _preview,
         more=lambda state: (state.recomputed,),
-        slots=_describing,
+        slots=lambda state: DESCRIBING,
         keeps=lambda old, new: True,
         patient=True,
     ),
@@ -77,7 +68,7 @@ RESULTS = (
         _inputs,
         _exact_preview,
         more=lambda state: (state.snapshot(),),
-        slots=_describing,
+        slots=lambda state: DESCRIBING,
         pause=lambda old, new: new[1].allowed is None,
         keeps=lambda old, new: new[1].allowed is not None,
     ),

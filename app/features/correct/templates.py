@@ -25,16 +25,9 @@ def fit(session: Session, template: Template) -> None:
         return fit_skeleton(mesh, template, graph=graph, progress=progress)
 
     def done(skeleton: Skeleton) -> None:
-        edits = Edits(added(state.own, skeleton))
-        changed = edited_state(session, edits)
-        state.param.update(
-            **{
-                **changed,
-                "joint": first_joint(changed["rig"]),
-                "panel": "weights",
-                "joint_handle": True,
-            }
-        )
+        changed = edited_state(session, Edits(added(state.own, skeleton)))
+        changed |= {"joint": first_joint(changed["rig"]), "panel": "weights", "joint_handle": True}
+        state.param.update(**changed)
 
     session.work.start("character", work, done)
 

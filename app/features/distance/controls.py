@@ -23,11 +23,9 @@ def _one(state: Any) -> bool:
 
 def _measure(name: str) -> ui.Control:
     """Return the switch of a measure, of which four at most can be on."""
-
-    def is_full(state: Any) -> bool:
-        return not getattr(state, name) and len(state.measures) >= MAX_MEASURES
-
-    return ui.switch(name, disabled=is_full)
+    return ui.switch(
+        name, disabled=lambda s: not getattr(s, name) and len(s.measures) >= MAX_MEASURES
+    )
 
 
 def _play(session: Session) -> None:

@@ -48,13 +48,6 @@ def _measured_inputs(state: State, name: str) -> tuple[Any, ...] | None:
     return *bone, name, resolution
 
 
-def _measured(
-    distances: Any, joint: int, name: Any, resolution: int, *more: Any, progress: Any
-) -> Any:
-    rig, method = more
-    return measure_distance(rig, distances, joint, name, method)
-
-
 RESULTS = (
     Derived(
         "field",
@@ -65,7 +58,9 @@ RESULTS = (
     Derived(
         "measured",
         _measured_inputs,
-        _measured,
+        lambda distances, joint, name, resolution, rig, method, progress: measure_distance(
+            rig, distances, joint, name, method
+        ),
         parts=lambda state: state.measures,
         wanted=lambda state, name: state.panel == "distance",
         more=lambda state, name: (

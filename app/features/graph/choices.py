@@ -112,13 +112,8 @@ class Choices(param.Parameterized):
         state: Any = self
         if self.graph_resolution in (0, self.resolution) or state.rig is None:
             return None
-        return (
-            state.rig.mesh,
-            self.graph_resolution,
-            self.connectivity,
-            self.winding_threshold,
-            self.orient,
-        )
+        method = self.connectivity, self.winding_threshold, self.orient
+        return state.rig.mesh, self.graph_resolution, *method
 
     @property
     def shown_graph(self) -> Any:

@@ -59,13 +59,13 @@ def _about(state: Any) -> str:
     layer = _layer(state)
     if layer is None:
         return ABOUT
-    names = layer.content.joints_named()
-    joints = f": {listed(list(names))}" if names and not isinstance(layer.content, Painted) else ""
-    extra = ""
+    names, where = layer.content.joints_named(), ""
     if isinstance(layer.content, Painted):
-        extra = f" at {count(len(layer.content.vertices), 'vertex')}"
+        where = f" at {count(len(layer.content.vertices), 'vertex')}"
+    elif names:
+        where = f": {listed(list(names))}"
     covers = " It replaces all weights below it." if layer.is_reach and layer.on else ""
-    return f"{layer.content.title}{extra}{joints}.{covers}"
+    return f"{layer.content.title}{where}.{covers}"
 
 
 def _sets(name: str) -> Any:

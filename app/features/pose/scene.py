@@ -183,6 +183,11 @@ def clip_of(state: State) -> Clip | None:
     """Return the current motion: a clip of the rig, or a swing of the chosen joint."""
     if not state.moving or state.rig is None or not PANELS[state.panel].poses:
         return None
+    return chosen_clip(state)
+
+
+def chosen_clip(state: State) -> Clip:
+    """Return the motion that is chosen, whether or not it is on."""
     if 0 <= state.clip < len(state.rig.clips):
         return state.rig.clips[state.clip]
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)

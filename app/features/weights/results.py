@@ -102,9 +102,7 @@ def _bound(*inputs: Any, progress: Progress) -> Bound:
 
 
 def _influences_inputs(state: State) -> tuple[Any, ...] | None:
-    if state.bound is None:
-        return None
-    return state.bound, falloff_options(state)
+    return None if state.bound is None else (state.bound, falloff_options(state))
 
 
 def _influences(

@@ -110,10 +110,8 @@ def _put(
         some = rows[done : done + len(part)]
         done += len(part)
         some = some.toarray() if isinstance(some, csr_array) else some
-        how = np.broadcast_to(strength, len(weights))[part]
-        weights[part] = blended(
-            weights[part], some, how, sources.method.max_influences, sources.priority
-        )
+        how, most = np.broadcast_to(strength, len(weights))[part], sources.method.max_influences
+        weights[part] = blended(weights[part], some, how, most, sources.priority)
 
 
 def _blocks(which: Which, weights: NDArray[np.float64]) -> Iterator[NDArray[np.intp]]:

@@ -8,8 +8,8 @@ from typing import Any, ClassVar, Literal
 
 from ...errors import ParameterError
 from ...method import ANIMATION, METHODS, Method, method_of
-from ...rig.checks import check_choice, check_flag, check_integer, check_number
-from .packing import assign, joint_name, joint_names, mapping, with_keys
+from ...rig.checks import assign, check_choice, check_flag, check_integer, check_number
+from .packing import joint_name, joint_names, mapping, with_keys
 
 MIN_GAIN, MAX_GAIN = 0.05, 20.0
 MAX_STEPS = 1000

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ParameterError
-from ...rig.checks import check_flag, check_integer, check_number, frozen, shown
+from ...rig.checks import assign, check_flag, check_integer, check_kind, check_number, frozen
 from .contents import (
     Attached,
     Computed,
@@ -22,17 +22,7 @@ from .contents import (
     Rename,
     Smoothed,
 )
-from .packing import (
-    MAX_VERTEX,
-    ByValue,
-    ascending,
-    assign,
-    naming,
-    numbers,
-    packed,
-    unpacked,
-    with_keys,
-)
+from .packing import MAX_VERTEX, ByValue, ascending, naming, numbers, packed, with_keys
 from .painted import Painted
 
 KINDS: dict[str, Any] = {
@@ -75,7 +65,7 @@ class Mask(ByValue):
             raise ParameterError("a mask has a part, or vertices, which may have strengths")
         how: Any = None
         if strengths is not None:
-            how = numbers("strengths", unpacked("strengths", strengths, "f"))
+            how = numbers("strengths", strengths, "f")
             if len(how) != len(which) or not ((how > 0) & (how <= 1)).all():
                 raise ParameterError(
                     f"strengths must be {len(which)} numbers, one for each vertex, above 0 and at "
@@ -125,9 +115,7 @@ class Layer:
 
     def __post_init__(self) -> None:
         for name, kind in (("content", Content), ("mask", Mask), ("name", str)):
-            value = getattr(self, name)
-            if not isinstance(value, kind):
-                raise ParameterError(f"{name} must be a {kind.__name__}, not {shown(value)}")
+            check_kind(name, getattr(self, name), kind)
         assign(self, opacity=check_number("opacity", self.opacity, 0, 1))
         check_flag("on", self.on)
 
@@ -164,8 +152,7 @@ class Layer:
     def from_data(cls, where: str, value: Any) -> Layer:
         """Read what `to_data` returns."""
         if not isinstance(value, Mapping) or value.get("kind") not in KINDS:
-            kinds = ", ".join(KINDS)
-            raise ParameterError(f'{where} must have a "kind": one of {kinds}')
+            raise ParameterError(f'{where} must have a "kind": one of {", ".join(KINDS)}')
         kind = KINDS[value["kind"]]
         own = [one.name for one in fields(kind)]
         data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on"])

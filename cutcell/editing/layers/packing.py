@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...errors import ParameterError
@@ -47,12 +47,6 @@ def _same(a: Any, b: Any) -> bool:
     return np.array_equal(a, b) if isinstance(a, np.ndarray) else a is b or bool(a == b)
 
 
-def assign(target: Any, **values: Any) -> None:
-    """Set fields of a frozen dataclass, as its `__post_init__` does with checked values."""
-    for name, value in values.items():
-        object.__setattr__(target, name, value)
-
-
 @contextmanager
 def naming(where: str) -> Iterator[None]:
     """Say in parameter errors which part of the edits they are about."""
@@ -69,35 +63,30 @@ def packed(array: NDArray[Any]) -> Any:
     return base64.b64encode(array.astype(TYPES[array.dtype.kind]).tobytes()).decode()
 
 
-def unpacked(where: str, value: Any, kind: str) -> Any:
-    """Read what `packed` returns; `kind` is "i" or "f". Lists and arrays are returned as given."""
-    if not isinstance(value, str):
-        return value
-    try:
-        return np.frombuffer(base64.b64decode(value, validate=True), TYPES[kind])
-    except (binascii.Error, ValueError):
-        raise ParameterError(f"{where} must be a list of numbers, or base64 of them") from None
-
-
 def ascending(where: str, value: Any) -> NDArray[np.int32]:
     """Return vertices as sorted int32 without repetition; raise a ParameterError otherwise."""
-    vertices = numbers(where, unpacked(where, value, "i"))
+    vertices = numbers(where, value, "i")
     whole = np.isfinite(vertices) & (vertices == np.floor(vertices))
     if not (whole & (vertices >= 0) & (vertices <= MAX_VERTEX)).all():
         raise ParameterError(f"{where} must be whole numbers from 0 to {MAX_VERTEX:,}")
-    result: NDArray[np.int32] = vertices.astype(np.int32)
+    result = vertices.astype(np.int32)
     if (np.diff(result) <= 0).any():
         raise ParameterError(f"{where} must ascend, each named once")
     return frozen(result)
 
 
-def numbers(where: str, value: ArrayLike) -> NDArray[np.float64]:
-    """Return an array of numbers, shape (k,)."""
+def numbers(where: str, value: Any, kind: str) -> NDArray[np.float64]:
+    """Return an array of numbers, shape (k,); of a text, what `packed` made of "i" or "f"."""
+    if isinstance(value, str):
+        try:
+            value = np.frombuffer(base64.b64decode(value, validate=True), TYPES[kind])
+        except (binascii.Error, ValueError):
+            raise ParameterError(f"{where} must be a list of numbers, or base64 of them") from None
     try:
         result = np.asarray(value, np.float64)
     except (TypeError, ValueError):
         result = np.empty((0, 0))
-    if result.ndim != 1 or isinstance(value, str):
+    if result.ndim != 1:
         raise ParameterError(f"{where} must be a list of numbers, not {shown(value)}")
     return result
 
@@ -110,10 +99,7 @@ def packed_rows(rows: csr_array) -> dict[str, Any]:
 def unpacked_rows(value: Any, columns: int) -> csr_array:
     """Read what `packed_rows` returns."""
     data = with_keys("rows", value, ROWS)
-    parts = [
-        numbers(f"{name} of rows", unpacked(f"{name} of rows", data.get(name, ()), kind))
-        for name, kind in ROWS.items()
-    ]
+    parts = [numbers(f"{key} of rows", data.get(key, ()), kind) for key, kind in ROWS.items()]
     values, indices, starts = parts[0], parts[1].astype(np.int32), parts[2].astype(np.int32)
     try:
         rows = csr_array((values, indices, starts), shape=(max(len(starts) - 1, 0), columns))

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array, issparse
+from scipy.sparse import csr_array, issparse, vstack
 
 from ...errors import ParameterError
-from ...rig.checks import frozen
+from ...rig.checks import assign, frozen
 from .contents import ROUNDING, Content, Rename
-from .packing import ByValue, ascending, assign, joint_names, packed, packed_rows, unpacked_rows
+from .packing import ByValue, ascending, joint_names, packed, packed_rows, unpacked_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,8 @@ class Painted(ByValue, Content):
         vertices = np.concatenate([self.vertices[rest], above.vertices])
         parts = [one._in_columns(one.joints, names) for one in (self, above)]
         order = np.argsort(vertices, kind="stable")
-        return Painted(vertices[order], names, _stacked(parts[0][rest], parts[1])[order])
+        rows = csr_array(vstack([parts[0][rest], parts[1]], format="csr"))
+        return Painted(vertices[order], names, rows[order])
 
     def _in_columns(self, joints: Sequence[str | None], names: Sequence[str]) -> csr_array:
         """Return the rows with columns for other names; joints is None for those left out."""
@@ -113,23 +114,9 @@ def _checked_rows(rows: Any, vertices: NDArray[np.int32], joints: int) -> csr_ar
             f"vertex {vertices[row]} needs a weight above 0 for at least one joint"
         )
     if (np.abs(total - 1) > ROUNDING).any():
-        counts = np.diff(matrix.indptr)
         whole = np.where(np.abs(total - 1) > ROUNDING, total, 1.0)
-        matrix = csr_array(
-            (matrix.data / np.repeat(whole, counts), matrix.indices, matrix.indptr), matrix.shape
-        )
+        data = matrix.data / np.repeat(whole, np.diff(matrix.indptr))
+        matrix = csr_array((data, matrix.indices, matrix.indptr), matrix.shape)
     for array in (matrix.data, matrix.indices, matrix.indptr):
         frozen(array)
     return matrix
-
-
-def _stacked(above: csr_array, below: csr_array) -> csr_array:
-    """Return the rows of two matrices, one after the other."""
-    return csr_array(
-        (
-            np.concatenate([above.data, below.data]),
-            np.concatenate([above.indices, below.indices]),
-            np.concatenate([above.indptr, above.indptr[-1] + below.indptr[1:]]),
-        ),
-        shape=(above.shape[0] + below.shape[0], above.shape[1]),
-    )

@@ -82,16 +82,14 @@ class RigSources:
     def component(self) -> NDArray[np.integer]:
         """Return the connected component of each vertex, shape (n,)."""
         assert self.graph is not None
-        label: NDArray[np.integer] = self._surface().component[self.graph.vertex_node]
-        return label
+        return self._surface().component[self.graph.vertex_node]
 
     def rows(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         """Return which of some vertices a layer's content has weights for, and their rows.
 
         Shapes: below (n, j), the weights below the layer; returns rows (k, j).
         """
-        made: Rows = getattr(self, f"_{layer.content.kind}")(layer, below, which)
-        return made
+        return getattr(self, f"_{layer.content.kind}")(layer, below, which)
 
     def _surface(self) -> SurfaceOperators:
         assert self.graph is not None
@@ -125,12 +123,9 @@ class RigSources:
                     if layer.mask.part is not None:
                         place = f"the part of vertex {layer.mask.part}"
                     raise ParameterError(f'the file cannot store weight of "{name}" for {place}')
-        count, many = len(which), len(columns)
-        rows = csr_array(
-            (np.tile(list(weights.values()), count), np.tile(columns, count),
-             np.arange(count + 1) * many), shape=(count, below.shape[1]),
-        )  # fmt: skip
-        return which, rows
+        count, starts = len(which), np.arange(len(which) + 1) * len(columns)
+        data, indices = np.tile(list(weights.values()), count), np.tile(columns, count)
+        return which, csr_array((data, indices, starts), shape=(count, below.shape[1]))
 
     def _attached(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         assert self.graph is not None
@@ -154,9 +149,8 @@ class RigSources:
         assert isinstance(content, Painted)
         columns = np.array([joint_index(self.rig.skeleton, name) for name in content.joints])
         rows, vertices = content.rows, content.vertices.astype(np.intp)
-        rows = csr_array(
-            (rows.data, columns[rows.indices], rows.indptr), shape=(len(vertices), below.shape[1])
-        )
+        shape = len(vertices), below.shape[1]
+        rows = csr_array((rows.data, columns[rows.indices], rows.indptr), shape=shape)
         if which is None:
             return vertices, rows
         some = np.isin(vertices, which, assume_unique=True)
@@ -176,9 +170,8 @@ class RigSources:
 
     def _locked(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         assert isinstance(layer.content, Locked)
-        joints = list(layer.content.joints)
-        rows = lock_joints(self.rig, below, joints, self.method.max_influences, which)
-        return which, rows
+        joints, most = list(layer.content.joints), self.method.max_influences
+        return which, lock_joints(self.rig, below, joints, most, which)
 
     @property
     def _over(self) -> Neighbours:

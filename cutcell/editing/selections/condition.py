@@ -29,7 +29,6 @@ OPERATOR = re.compile(r"<=|>=|==|!=|[<>=≤≥≠]")
 QUOTED = re.compile(r"""(["'])(.*?)\1""")
 NAME_END = re.compile(r"\s|[<>=!≤≥≠)]|$")
 BARE_NAME = re.compile(r"(.*?)(?=\s+(?:and|or)\b|\s*[<>=!≤≥≠)]|\s*$)", re.IGNORECASE)
-EXAMPLE = 'weight of "hand.L" > 0.1'
 
 Value = NDArray[np.float64] | float
 COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
@@ -203,7 +202,8 @@ class _Parser:
     def _fail(self, expected: str) -> NoReturn:
         rest = self._rest()
         where = f"at character {self._at + 1}, {shown(rest[:LONG])}" if rest else "at its end"
-        raise ParameterError(f"the condition needs {expected} {where}; write for example {EXAMPLE}")
+        example = 'weight of "hand.L" > 0.1'
+        raise ParameterError(f"the condition needs {expected} {where}; write for example {example}")
 
 
 def _begins(text: str, name: str) -> bool:

@@ -40,8 +40,8 @@ def sorted_influences(
     fits = slot < slots
     joints[rows[fits], slot[fits]] = columns[fits]
     shares[rows[fits], slot[fits]] = values[fits]
-    joints, shares = (one.reshape(-1, sets, 4).transpose(1, 0, 2) for one in (joints, shares))
-    return joints, shares
+    in_slots = [one.reshape(-1, sets, 4).transpose(1, 0, 2) for one in (joints, shares)]
+    return in_slots[0], in_slots[1]
 
 
 def take_influences(attributes: dict[str, int]) -> dict[str, int]:

@@ -86,7 +86,7 @@ class Nodes:
         return nearest
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
-        """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, else to the scene."""
+        """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, or the scene."""
         relative = self.local.copy()
         parents = np.array(self.parents, int)
         chosen = np.zeros(len(self.raw), bool)
@@ -133,10 +133,9 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
     levels = [children.get(-1, [])]
     while levels[-1]:
         levels.append([c for i in levels[-1] for c in children.get(i, ())])
-    reached = sum(len(level) for level in levels)
-    if reached < len(parents):
-        reached_nodes = {i for level in levels for i in level}
-        stuck = next(i for i in range(len(parents)) if i not in reached_nodes)
+    reached = {i for level in levels for i in level}
+    if len(reached) < len(parents):
+        stuck = next(i for i in range(len(parents)) if i not in reached)
         raise SkeletonError(
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )

@@ -28,9 +28,7 @@ Piece: TypeAlias = tuple[Surface, NDArray[np.integer], slice, NDArray[np.float64
 rows in the mesh, and the matrix (4, 4) from the space of the surface."""
 
 
-def join_corners(
-    vertices: NDArray[np.floating], faces: NDArray[np.integer], pieces: Iterable[Piece]
-) -> Corners:
+def join_corners(vertices: NDArray, faces: NDArray, pieces: Iterable[Piece]) -> Corners:
     """Return the corners of a mesh of pieces; the faces of some may not be their surface's.
 
     Where a file has no normal, or a normal without a direction, it is that of the smooth surface.
@@ -53,9 +51,8 @@ def join_corners(
             moved = _moved(surface.normals.reshape(-1, 3)[where], matrix)
             against = np.einsum("ikc,ic->ik", moved, face_normals(vertices[faces[rows]])) < 0
             normals[rows] = np.where((against & turned[:, None])[..., None], -moved, moved)
-    return Corners(
-        _complete(normals, vertices, faces) if has_normals else None, places if has_places else None
-    )
+    complete = _complete(normals, vertices, faces) if has_normals else None
+    return Corners(complete, places if has_places else None)
 
 
 def _moved(normals: NDArray, matrix: NDArray) -> NDArray:
@@ -86,13 +83,10 @@ def _complete(normals: NDArray, vertices: NDArray, faces: NDArray) -> NDArray[np
     return np.asarray(np.round(normals, DECIMALS) + 0.0, np.float32)  # -0 is 0
 
 
-def vertex_normals(
-    vertices: NDArray[np.floating], faces: NDArray[np.integer]
-) -> NDArray[np.float32]:
+def vertex_normals(vertices: NDArray, faces: NDArray) -> NDArray[np.float32]:
     """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
     area = face_normals(vertices[faces].astype(float))
-    _, same = np.unique(vertices, axis=0, return_inverse=True)
-    same = same.reshape(-1)
+    same = np.unique(vertices, axis=0, return_inverse=True)[1].reshape(-1)
     summed = np.zeros((same.max() + 1, 3))
     for k in range(3):
         np.add.at(summed, same[faces[:, k]], area)

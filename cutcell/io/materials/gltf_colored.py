@@ -90,8 +90,8 @@ def _with_looks(
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
         _store(buffer, mesh["primitives"], new, plain)
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
-        weights = {name: values for name, values in new.arrays.items() if _is_weight(name)}
-        stored = {name: buffer.store(weights[name], new.old[name]) for name in weights}
+        weights = filter(_is_weight, new.arrays)
+        stored = {name: buffer.store(new.arrays[name], new.old[name]) for name in weights}
         for primitive in mesh["primitives"]:
             primitive["attributes"].update(stored)
     if all(mesh.groups for mesh in new_meshes):
@@ -148,9 +148,7 @@ def _per_vertex(faces: NDArray, values: NDArray[np.float32], count: int) -> NDAr
     return of_vertex
 
 
-def split_at_seams(
-    faces: NDArray[np.integer], count: int, values: NDArray[np.float32]
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def split_at_seams(faces: NDArray, count: int, values: NDArray) -> tuple[NDArray, NDArray]:
     """Split vertices by their corners' values (m, 3, k); return faces, and origins (count + s,)."""
     corner = faces.reshape(-1).astype(np.intp)
     keys = values.reshape(len(corner), -1)
@@ -179,24 +177,22 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
         return
     named = primitive["attributes"]
     for name, values in mesh.arrays.items():
-        if _is_weight(name):
-            continue
-        named[name] = buffer.store(values, mesh.old.get(name), bounds=name == "POSITION")
-        if name == "COLOR_0":
-            buffer.accessors[named[name]]["normalized"] = True
+        if not _is_weight(name):
+            named[name] = buffer.store(values, mesh.old.get(name), bounds=name == "POSITION")
+    if "COLOR_0" in mesh.arrays:
+        buffer.accessors[named["COLOR_0"]]["normalized"] = True
     count = buffer.accessors[named["POSITION"]]["count"]
     kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
     primitives.clear()
     everything = Group(plain, np.arange(len(mesh.faces)), mesh.has_places, varied=False)
     for k, group in enumerate(mesh.groups or [everything]):
         corners = mesh.faces[group.rows].reshape(-1, 1).astype(kind)
+        old = None if k else mesh.old["indices"]
         uses = {"TEXCOORD_0": group.textured or mesh.has_places, "COLOR_0": group.varied}
         primitives.append({
             **primitive,
             "attributes": {name: at for name, at in named.items() if uses.get(name, True)},
-            "indices": buffer.store(
-                corners, None if k else mesh.old["indices"], ELEMENT_ARRAY_BUFFER
-            ),
+            "indices": buffer.store(corners, old, ELEMENT_ARRAY_BUFFER),
             "material": group.material,
         })  # fmt: skip
 

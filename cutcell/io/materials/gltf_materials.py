@@ -86,8 +86,7 @@ class PrimitivePaint:
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
             return
-        factor = np.array(base.factor)
-        corners = colors.corners
+        factor, corners = np.array(base.factor), colors.corners
         if base.material is not None:
             name = base.material.get("name")
             named = name if isinstance(name, str) else ""

@@ -49,10 +49,8 @@ class Palette:
         # Blending matters where there is an image, or a colour that is not opaque.
         counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
         blended = (colors.corners[:, 0, 3] >= BLENDED) & counts
-        kinds = np.column_stack([colors.materials, layers, blended])
-        unique, first, of_face = np.unique(
-            kinds.astype(int), axis=0, return_index=True, return_inverse=True
-        )
+        kinds = np.column_stack([colors.materials, layers, blended]).astype(int)
+        unique, first, of_face = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
         of_face = of_face.reshape(-1)
         ends = np.cumsum(np.bincount(of_face))
         faces = np.split(np.argsort(of_face, kind="stable"), ends[:-1])
@@ -61,8 +59,7 @@ class Palette:
         groups = []
         for k in np.argsort(first).tolist():
             name, layer, is_blended = unique[k].tolist()
-            rows = faces[k]
-            corners = rgba[rows]
+            rows, corners = faces[k], rgba[faces[k]]
             varied = bool((corners != corners[0, 0]).any())
             factor = (OPAQUE,) * 4 if varied else tuple(corners[0, 0].tolist())
             if varied:

@@ -40,13 +40,11 @@ class ObjSource:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The materials of the mesh, and what its corners have."""
-        contents = self.contents
-        faces = contents.mesh.faces
+        contents, faces = self.contents, self.contents.mesh.faces
         materials, images, notes = _materials(self.path, contents)
         colors = None
         if contents.colors is not None:
-            values = np.clip(contents.colors, 0, 1)
-            colors = np.round(255 * values).astype(np.uint8)[faces]
+            colors = np.round(255 * np.clip(contents.colors, 0, 1)).astype(np.uint8)[faces]
         surface = Surface(faces, contents.material, contents.places, colors, contents.normals)
         return Surfaces(self.path, {0: surface}, materials, images, notes)
 

@@ -156,14 +156,10 @@ def scene_surfaces(
         material = scene.get(f"mesh_{k}_materials", np.full(len(faces), -1)).astype(np.int32)
         corners = {key: scene.get(f"mesh_{k}_{key}") for key in ("places", "colors", "normals")}
         meshes[number] = Surface(faces, material, **corners)
+    stored = (scene[f"material_{key}"].tolist() for key in ("names", "values", "uses"))
     materials = [
         Material(str(name), tuple(values[:3]), int(image), values[3], bool(cut), True)
-        for name, values, (image, cut) in zip(
-            scene["material_names"],
-            scene["material_values"].tolist(),
-            scene["material_uses"].tolist(),
-            strict=True,
-        )
+        for name, values, (image, cut) in zip(*stored, strict=True)
     ]
     images = [
         ImageFile(tuple(map(str, names)), scene[f"image_{i}_content"].tobytes())

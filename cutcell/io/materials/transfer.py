@@ -74,9 +74,8 @@ def read_materials(rig: Rig) -> Materials | None:
     if len(whole) < len(colors):
         return None
     layers, images = tuple(collected.layers), tuple(collected.images)
-    return Materials(
-        whole[0], whole[1:], layers, images, tuple(collected.notes), tuple(collected.names)
-    )
+    notes, names = tuple(collected.notes), tuple(collected.names)
+    return Materials(whole[0], whole[1:], layers, images, notes, names)
 
 
 def read_corners(rig: Rig) -> Corners:
@@ -133,9 +132,8 @@ def _of_body(
 
 def _of_node(document: Document, number: int) -> Iterator[tuple[Any, int, slice]]:
     mesh = document.items("nodes")[number]["mesh"]
-    for primitive, first, rows in read_triangles(document, mesh, document.label("nodes", number))[
-        2
-    ]:
+    drawn = read_triangles(document, mesh, document.label("nodes", number))[2]
+    for primitive, first, rows in drawn:
         yield _what(document, mesh, primitive), first, rows
 
 

@@ -67,15 +67,12 @@ def parse_obj(text: str) -> ObjMesh:
         )
     triangles, polygons = cut_polygons(vertices, at[:, 0], np.array(read.sizes, int))
     mesh = TriangleMesh(vertices, at[:, 0][triangles])
-    return ObjMesh(
-        mesh,
-        _of_corners(read.places, at[:, 1][triangles], (0, 1)),
-        _of_corners(read.normals, at[:, 2][triangles], (nan, nan, nan)),
-        np.array(read.colors) if len(read.colors) == len(vertices) else None,
-        np.array(read.materials, np.int32)[polygons],
-        tuple(read.names),
-        tuple(dict.fromkeys(read.libraries)),
-    )
+    places = _of_corners(read.places, at[:, 1][triangles], (0, 1))
+    normals = _of_corners(read.normals, at[:, 2][triangles], (nan, nan, nan))
+    colors = np.array(read.colors) if len(read.colors) == len(vertices) else None
+    material = np.array(read.materials, np.int32)[polygons]
+    names, libraries = tuple(read.names), tuple(dict.fromkeys(read.libraries))
+    return ObjMesh(mesh, places, normals, colors, material, names, libraries)
 
 
 def write_obj(mesh: TriangleMesh) -> str:

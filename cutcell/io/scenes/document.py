@@ -59,8 +59,7 @@ def scene_document(
     for k in range(len(scene["mesh_names"])):
         made.add_scene_mesh(scene, k, skins.get(k))
     made.add_clips(scene)
-    data = made.buffer.finish()
-    document = Document(path, made.json, [data])
+    document = Document(path, made.json, [made.buffer.finish()])
     document.surfaces = scene_surfaces(scene, path, made.meshes)
     placed = dict.fromkeys(node for skin in skins.values() for node in skin.mended)
     if placed:
@@ -179,7 +178,7 @@ def read_scene(path: Path, accessories: bool = False) -> Rig:
         "skeleton from another file, or fit one"
     )
     why_bare *= "morph targets" in dropped
-    return read_rig(document, path, world, accessories, why_bare=why_bare)
+    return read_rig(document, world, accessories, why_bare)
 
 
 def scene_arrays(path: Path) -> Mapping[str, NDArray]:

@@ -34,7 +34,7 @@ class Body:
         corners = _outward((mesh.vertices - low) / self.size, mesh.faces)
         self._low = low
         self._corners = corners
-        self.points, self._areas = _samples(corners)
+        self.points, self.areas = _samples(corners)
         self._tree = cKDTree(self.points)
 
     def to_unit(self, points: NDArray) -> NDArray[np.float64]:
@@ -52,7 +52,7 @@ class Body:
         for first in range(0, len(points), step):
             away = self.points - points[first : first + step, None]
             cubed = np.einsum("psi,psi->ps", away, away) ** 1.5
-            covered = np.einsum("psi,si->ps", away, self._areas) / cubed
+            covered = np.einsum("psi,si->ps", away, self.areas) / cubed
             winding[first : first + step] = covered.sum(axis=1)
         return winding > INSIDE * 4 * np.pi
 

@@ -59,17 +59,23 @@ CONVENTIONS = (
         "Auto-Rig Pro",
         "https://www.lucky3d.fr/auto-rig-pro/doc/",
         signs=r" x" + NUMBER + r"|^(arm|forearm|thigh|leg) (stretch|twist)|^c (traj|pos)$",
-        controls=r"\b(ref|fk|ik|pole|nostr|scale fix|target|track|roll|bank|pivot)\b|"
-        r"^c (traj|pos|root master|foot 01|foot heel|stretch .*|p .*)\b",
-        bones=r"^c .*\b(thigh b|ear|skull|bend|breast|offset)\b|\b(stretch|twist)\b|^root x",
-        yields=((r"^c (.*)$", r"\1"), (r"^(arm|forearm|thigh|leg)$", r"\1 stretch")),
+        controls=r"\b(ref|fk|ik|pole|nostr|scale fix|target|track|roll|bank|pivot|rot|twk)\b|"
+        r"^c (traj|pos|root master|root bend|foot 01|foot heel|toes.*|stretch .*|p .*)\b|"
+        r"^(foot heel|neck twist|toes 02)\b|\bbend all\b",
+        bones=r"^c .*\b(thigh b|ear|skull|bend|breast|offset)\b|\b(stretch|twist)\b|"
+        r"^(root|spine \d+|neck|head) x",
+        yields=(
+            (r"^c (.*)$", r"\1"),
+            (r"^(arm|forearm|thigh|leg)$", r"\1 stretch"),
+            (r"^(arm|forearm|thigh|leg) twist$", r"c \1 twist offset"),
+        ),
     ),
     Convention(
         "Advanced Skeleton",
         "https://www.animationstudios.com.au/advanced-skeleton",
         signs=r" m" + NUMBER,
         bones=r"^root m" + NUMBER,
-        controls=r"^(heel|fkx?|ikx?|fk offset|ik offset)\b",
+        controls=r"^(heel|fkx?|ikx?|fk offset|ik offset|un ?twist|twist ?balancer)\b",
         ends=r"\bend( m)?" + NUMBER + r"|finger 4" + NUMBER,
     ),
     Convention(
@@ -236,14 +242,14 @@ def _kind(
     name, side = text
     for row in rows:
         by = f" in {row.tool}"
+        for pattern, other in row.yields:
+            if re.search(pattern, name) and (re.sub(pattern, other, name), side) in together:
+                return "controls", f"control, by its name{by}: another joint deforms"
         if kind := _first(row, name):
             if kind == "bones" and row.only and re.search(GENERAL.ends, rare):
                 return "ends", REASONS["ends"]
             is_root = kind == "bones" and row.only and re.search(GENERAL.roots, rare)
             return "root" if is_root else kind, REASONS.get(kind, "") + by
-        for pattern, other in row.yields:
-            if re.search(pattern, name) and (re.sub(pattern, other, name), side) in together:
-                return "controls", f"control, by its name{by}: another joint deforms"
         if row.only and _first(GENERAL, rare) not in ("controls", "ends", "sockets"):
             return "others", f"others are marked as deforming{by}"
     kind = _first(GENERAL, rare)

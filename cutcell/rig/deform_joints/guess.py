@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...geometry.segments import distance_to_segment
 from ..mesh import TriangleMesh
 from ..rig import FAR_OUTSIDE
 from ..skeleton import Skeleton
@@ -29,6 +31,14 @@ ALONG = np.linspace(0.1, 0.9, 9)
 """Samples along a link."""
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
+IK = re.compile(r"\bikp?\b")
+"""In names of controls of inverse kinematics."""
+NEARER = 0.5
+"""Distance of skin from a joint, relative to its nearest bone, at which it lacks the joint."""
+LACKING = 0.03
+"""Part of the skin that must lack a joint for the joint to deform."""
+MAX_OUTSIDE = 0.1
+"""Distance from the body beyond which no skin lacks a joint, in longest sides."""
 NOTHING_BEYOND = 0.05
 """Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
 
@@ -87,6 +97,7 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = No
     guess.by_name()
     if len(skeleton.joints) <= MAX_JOINTS and guess.is_in_body():
         guess.by_place()
+        guess.by_skin()
     if not guess.deform.any():  # a rig of nothing but controls: then they are what moves it
         every = np.ones(len(skeleton.joints), bool)
         return DeformJoints(every, (BONE,) * len(every), every)
@@ -140,6 +151,10 @@ class _Guess(Joints):
                 self.rule_out(j, "part of a control")
             elif k != j and self.plain[j][1] == self.plain[k][1] and self.ends_limb(k):
                 self.rule_out(j, f'control of "{self.names[k]}"')
+        for j in self.leaves_first:
+            is_ik = self.deform[j] and unsure[j] and IK.search(self.plain[j][0])
+            if is_ik and not len(self.bones_below(j)):
+                self.rule_out(j, "control without bones below it, by its name")
 
     def by_place(self) -> None:
         """Rule out what was never placed, is away from the body, or where another joint is."""
@@ -169,7 +184,6 @@ class _Guess(Joints):
         if is_all and not chained and self.distance[joint] <= FEW_BONES:
             return  # it moves the skin that its few children do not
         is_named = self.kinds[joint][0] == "root"
-        ways = self.joints[below] - self.joints[joint]
         if len(below) <= 2 and all(self.together(joint, k) for k in below):
             # Another bone is harmless there, while the wrong one of two turns too much.
             decide = self.rule_out if is_named else self.doubt
@@ -180,8 +194,8 @@ class _Guess(Joints):
                 decide = self.rule_out if is_named or len(below) < 3 else self.doubt
                 decide(joint, "root beside the body")
         elif is_named:
-            is_start = len(below) == 1 or (len(below) == 2 and ways[0] @ ways[1] > 0)
-            decide = self.rule_out if is_start else self.doubt
+            moves_controls = any(self.kinds[k][0] == "controls" for k in self.children[joint])
+            decide = self.rule_out if moves_controls else self.doubt
             decide(joint, "root, by its name")
 
     def _inner(self, joint: int, below: NDArray[np.intp]) -> None:
@@ -229,13 +243,54 @@ class _Guess(Joints):
                 continue
             chains = {j: self.chain(j) for j in (a, b)}
             places = {j: set(place[chain].tolist()) for j, chain in chains.items()}
-            ranks = [(len(places[j]), not self.is_top(j), -len(chains[j])) for j in (a, b)]
+            ranks = [
+                ("twist" not in self.stem(j), len(places[j]), not self.is_top(j), -len(chains[j]))
+                for j in (a, b)
+            ]
             less, more = (a, b) if ranks[0] < ranks[1] else (b, a)
-            if ranks[0] == ranks[1] or (self.ends_limb(less) and not is_alike):
+            marked = self.kinds[a][0] == self.kinds[b][0] == "bones"
+            if marked or ranks[0] == ranks[1] or (self.ends_limb(less) and not is_alike):
                 self.doubt(a, f'at the place of "{self.names[b]}"')
                 self.doubt(b, f'at the place of "{self.names[a]}"')
             elif places[less] <= places[more]:
                 self.rule_out(less, f'at the place of "{self.names[more]}"')
+
+    def by_skin(self) -> None:
+        """Doubt joints that were ruled out but are far nearer to some of the skin than any bone."""
+        candidates = [
+            j
+            for j in np.flatnonzero(~self.deform)
+            if self.distance[j] <= MAX_OUTSIDE
+            and self.kinds[j][0] != "roots"
+            and not (self.kinds[j][0] == "controls" and " in " in self.kinds[j][1])
+        ]
+        if not candidates or not self.deform.any():
+            return
+        area = np.linalg.norm(self.body.areas, axis=1)
+        area /= area.sum()
+        nearest = np.full(len(area), np.inf)
+        for j in np.flatnonzero(self.deform):
+            nearest = np.minimum(nearest, self._to_bones(j))
+        distances = {
+            j: np.linalg.norm(self.body.points - self.joints[j], axis=1) for j in candidates
+        }
+        while distances:
+            lacking = {j: area[away < NEARER * nearest].sum() for j, away in distances.items()}
+            j = max(lacking, key=lacking.__getitem__)
+            if lacking[j] < LACKING:
+                return
+            self.deform[j] = True
+            self.doubt(j, f"nearest to {lacking[j]:.0%} of the skin, but {self.reason[j]}")
+            nearest = np.minimum(nearest, distances.pop(j))
+
+    def _to_bones(self, joint: int) -> NDArray[np.float64]:
+        """Measure from samples of the skin to the bones of a joint; a last one goes on as far."""
+        start, parent = self.joints[joint], self.parents[joint]
+        below = [*self.bones_below(joint)] or [*self.children[joint]]
+        beyond = 2 * start[None] - self.joints[[parent if parent >= 0 else joint]]
+        ends = self.joints[below] if below else beyond
+        starts = np.broadcast_to(start, ends.shape)
+        return distance_to_segment(self.body.points[:, None], starts, ends).min(axis=1)
 
     def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
         """Return whether a link to any of the others runs through the body."""

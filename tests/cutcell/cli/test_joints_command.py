@@ -31,15 +31,15 @@ def test_says_what_was_chosen(run, demo_paths):
 def test_doubtful_joints_are_named_and_may_be_left_out(run, tmp_path):
     joints = [
         {"name": name, "position": [x, 0.1, 0.1], "parent": parent}
-        for name, x, parent in (("hip", 0.1, None), ("knee", 0.5, "hip"), ("IK", 0.8, "knee"))
+        for name, x, parent in (("hip", 0.1, None), ("knee", 0.5, "hip"), ("prop", 0.8, "knee"))
     ]
     path = write_obj(tmp_path / "leg.obj", joints=joints)
-    assert "joints that may be controls or end markers get weight: IK" in run("joints", path).stderr
+    assert "that may be controls or end markers get weight: prop" in run("joints", path).stderr
     rows = json.loads(run("joints", path, "--json").stdout)["joints"]
     assert [row["doubtful"] for row in rows] == [False, False, True]
     assert rows[2]["deform"]
     assert "doubtful · control or bone, by its name" in run("joints", path).stdout
-    rows = json.loads(run("joints", path, "--no-deform", "IK", "--json").stdout)["joints"]
+    rows = json.loads(run("joints", path, "--no-deform", "prop", "--json").stdout)["joints"]
     assert [row["doubtful"] for row in rows] == [False] * 3
 
 

@@ -8,7 +8,7 @@ bind matrices contain it.
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from copy import deepcopy
 
 import numpy as np
@@ -48,8 +48,7 @@ def bind_to_bones(document: Document, nodes: Nodes) -> tuple[Bind | None, str]:
             "them are bound"
         )
     _name(document, nodes, bones)
-    inverse = np.linalg.inv(nodes.world[bones.joints])
-    bind = Bind(nodes=bones.joints, inverse=list(inverse))
+    bind = Bind(nodes=bones.joints, inverse=list(np.linalg.inv(nodes.world[bones.joints])))
     add_skins(document, nodes, bind, {i: nodes.world[i] for i in free or meshes})
     return bind, ""
 
@@ -72,8 +71,7 @@ def add_skins(document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, ND
         node = nodes.raw[i]
         if node["mesh"] in used:  # other nodes show it in another way
             copied = deepcopy(document.items("meshes")[node["mesh"]])
-            document.items("meshes").append(copied)
-            node["mesh"] = len(document.items("meshes")) - 1
+            node["mesh"] = _append(document, "meshes", copied)
         used.add(node["mesh"])
         for primitive in primitives(document, node["mesh"], document.label("nodes", i)):
             take_influences(attributes(primitive, document.label("nodes", i)))  # of another skin
@@ -106,15 +104,13 @@ def _name(document: Document, nodes: Nodes, bones: Bones) -> None:
             nodes.raw[i]["name"] = names[i]
 
 
-def _bounds(
-    document: Document, nodes: Nodes, meshes: Iterable[int]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+def _bounds(document: Document, nodes: Nodes, meshes: list[int]) -> tuple[NDArray, NDArray] | None:
     """Return the lowest and highest coordinates of meshes in the scene."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for i in meshes:
         vertices = read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[0]
         if len(vertices):
-            placed = vertices @ nodes.world[i, :3, :3].T + nodes.world[i, :3, 3]
+            placed = moved(vertices, nodes.world[i])
             low, high = np.minimum(low, placed.min(axis=0)), np.maximum(high, placed.max(axis=0))
     return (low, high) if (low <= high).all() else None
 
@@ -174,10 +170,8 @@ def bind_accessories(document: Document, nodes: Nodes, bind: Bind) -> dict[int, 
     to_rig = {i: matrix for i, (_, matrix) in hanging.items()}
     if has_volume(bind.world):
         from_scene = np.linalg.inv(bind.world)
-        unskinned = (
-            i for i in nodes.in_scene() if nodes.raw[i].keys() & {"mesh", "skin"} == {"mesh"}
-        )
-        to_rig |= {i: from_scene @ nodes.world[i] for i in unskinned if i not in hanging}
+        bare = {i for i in nodes.in_scene() if nodes.raw[i].keys() & {"mesh", "skin"} == {"mesh"}}
+        to_rig |= {i: from_scene @ nodes.world[i] for i in bare - hanging.keys()}
     to_rig = {
         i: matrix
         for i, matrix in sorted(to_rig.items())

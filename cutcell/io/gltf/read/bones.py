@@ -7,7 +7,7 @@ trees of empty nodes that end in empty nodes: an empty node that ends in meshes 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -92,22 +92,21 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
         if parent >= 0:
             children[parent].append(i)
     height = _heights(nodes, empty, children)
-    ends = set(height)
     low, high = bounds or (np.full(3, -np.inf), np.full(3, np.inf))
     diagonal = float(np.linalg.norm(high - low)) if bounds else 0.0
     places = nodes.world[:, :3, 3]
     bones, outside = Bones(), []
-    for root in sorted(i for i in ends if nodes.parents[i] not in ends):
-        whole = _below(root, children, ends)
+    for root in sorted(i for i in height if nodes.parents[i] not in height):
+        whole = _below(root, children, height)
         if height[root] < MIN_CHAIN and (height[root] < 2 or len(whole) != 2):
             continue
         top = root
-        while len(below := [k for k in children[top] if k in ends]) == 1:
+        while len(below := [k for k in children[top] if k in height]) == 1:
             if np.abs(places[below[0]] - places[root]).max() > SAME_PLACE * diagonal:
                 break
             top = below[0]  # a group in the place of what it holds
-        tree = _below(top, children, ends)
-        groups = [k for i in tree if i != top for k in children[i] if k in empty - ends]
+        tree = _below(top, children, height)
+        groups = [k for i in tree if i != top for k in children[i] if k in empty - height.keys()]
         tree += [k for i in groups for k in _below(i, children, empty)]
         at = places[tree]
         if len(tree) < 2 or np.ptp(at, axis=0).max() <= SAME_PLACE * diagonal:
@@ -143,7 +142,7 @@ def _heights(nodes: Nodes, empty: set[int], children: dict[int, list[int]]) -> d
     return height
 
 
-def _below(top: int, children: dict[int, list[int]], chosen: set[int]) -> list[int]:
+def _below(top: int, children: dict[int, list[int]], chosen: Collection[int]) -> list[int]:
     """Return a node and all chosen nodes below it that chosen nodes connect to it."""
     reached = [top]
     for i in reached:  # grows

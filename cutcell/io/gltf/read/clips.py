@@ -25,7 +25,7 @@ MAX_MATRICES, LEVEL = 2**22, 100
 """Matrices in all frames, and the cost of a level of the hierarchy besides its own: a
 chain of thousands of nodes is shown by fewer frames, too."""
 
-WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
+PATHS = ("translation", "rotation", "scale")
 
 
 def read_clips(
@@ -148,7 +148,7 @@ def _tracks(
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
-        if node not in place or path not in WIDTHS:
+        if node not in place or path not in PATHS:
             if path == "translation":
                 find_accessor(document, sampler.get("output"), "VEC3", label)
                 if node is not None:
@@ -194,11 +194,7 @@ class _Subtree:
         order = np.array(subtree)[by_depth].tolist()
         self.place = {node: k for k, node in enumerate(order)}
         self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in order])
-        self.rest = {
-            "translation": nodes.translation[order],
-            "rotation": nodes.rotation[order],
-            "scale": nodes.scale[order],
-        }
+        self.rest = {path: getattr(nodes, path)[order] for path in PATHS}
         self.local = nodes.local[order]
         deeper = np.flatnonzero(np.diff(depth[by_depth])) + 1
         self.levels = np.split(np.arange(len(order)), deeper)
@@ -230,9 +226,7 @@ class _Subtree:
             posed[track.path][:, nodes] = track.at(seconds)
             moved[nodes] = True
         world = np.tile(self.local, (count, 1, 1, 1))
-        world[:, moved] = compose(
-            posed["translation"][:, moved], posed["rotation"][:, moved], posed["scale"][:, moved]
-        )
+        world[:, moved] = compose(*(posed[path][:, moved] for path in PATHS))
         world[..., :3, 3] += self.shift
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]

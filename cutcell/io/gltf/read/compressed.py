@@ -115,8 +115,7 @@ def decompress_draco(document: Document) -> None:
     packed = [one for one in compressed if not _plain(document, one[2])]
     views = list(dict.fromkeys(extension["bufferView"] for _, _, extension in packed))
     if packed:
-        decoded = _decode(document, views)
-        unpacking = _Unpacking(document, views, decoded)
+        unpacking = _Unpacking(document, views, _decode(document, views))
         for user, primitive, extension in packed:
             unpacking.fill_primitive(primitive, extension, user)
         document.buffers = [unpacking.writer.finish()]

@@ -77,8 +77,7 @@ def left_out_meshes(
     document: Document, nodes: Nodes, bound: Iterable[int], attached: Iterable[int]
 ) -> tuple[LeftOut, ...]:
     """List the meshes that no part and no attachment shows, with the reason."""
-    in_scene = set(nodes.in_scene())
-    used = {*bound, *attached}
+    in_scene, used = set(nodes.in_scene()), {*bound, *attached}
     left_out = []
     draws: dict[int, bool] = {}
     for i, node in enumerate(nodes.raw):

@@ -83,9 +83,9 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     with malformed():
         document = plain_document(path)
         if bare and not _skinned_nodes(Nodes(document)):
-            rig = read_bare(document, Nodes(document), path.stem)
+            rig = read_bare(document, Nodes(document))
         else:
-            rig = read_rig(document, path, accessories=accessories, has_bones=True)
+            rig = read_rig(document, accessories=accessories)
         many = ("accessors", "animations")  # which name buffers by views
         rest = {key: value for key, value in document.json.items() if key not in many}
         for owner in ranges_in(rest):  # saving copies them
@@ -95,17 +95,15 @@ def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
 
 def read_rig(
     document: Document,
-    path: Path,
     world: NDArray | None = None,
     accessories: bool = False,
-    has_bones: bool = False,
-    why_bare: str = "",
+    why_bare: str | None = None,
 ) -> Rig:
     """Return what a document with plain accessors holds.
 
     `world` is of `read_bind`. Meshes without a skin that hang on joints are bound with the others
-    if `accessories`. In a document without a skin, plain nodes may be joints if `has_bones`; else
-    `why_bare` says why it has no joints.
+    if `accessories`. In a document without a skin, plain nodes may be joints unless `why_bare`
+    says why it has none.
     """
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
@@ -115,9 +113,9 @@ def read_rig(
         skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
         bind = read_bind(document, nodes, skins, world)
     else:
-        bones, why = bind_to_bones(document, nodes) if has_bones else (None, why_bare)
+        bones, why = bind_to_bones(document, nodes) if why_bare is None else (None, why_bare)
         if bones is None:
-            return read_bare(document, nodes, path.stem, why)
+            return read_bare(document, nodes, why)
         bind, skinned = bones, _skinned_nodes(nodes)
     check_unused(document, bind)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
@@ -148,7 +146,7 @@ def read_rig(
         weights,
         clips=clips,
         attachments=tuple(attached.values()),
-        name=path.stem,
+        name=document.path.stem,
         world=bind.world,
         allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
         parts=tuple(stored.named),
@@ -159,15 +157,14 @@ def read_rig(
     )
 
 
-def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig:
+def read_bare(document: Document, nodes: Nodes, why: str = "") -> Rig:
     """Return the scene's meshes as a rig without joints; `why` is said where that surprises."""
     shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node]
-    shown = [i for i in nodes.in_scene() if i in set(shown)] or shown
-    drawn = {
-        i: read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[1]
-        for i in shown
-    }
-    placed = {i: nodes.world[i] for i in shown if len(drawn[i])}
+    shown = sorted(set(shown) & set(nodes.in_scene())) or shown
+    placed = {}
+    for i in shown:
+        if len(read_triangles(document, nodes.raw[i]["mesh"], document.label("nodes", i))[1]):
+            placed[i] = nodes.world[i]
     if not placed:
         raise MeshError("its meshes have no triangles")
     bind = Bind(skins={i: [] for i in placed}, to_rig=placed)
@@ -179,7 +176,7 @@ def read_bare(document: Document, nodes: Nodes, name: str, why: str = "") -> Rig
     return Rig(
         mesh,
         Skeleton([], []),
-        name=name,
+        name=document.path.stem,
         parts=tuple(stored.named),
         left_out=left_out,
         warnings=(*document.warnings, *filter(None, [why]), *left_out_warnings(left_out, ())),

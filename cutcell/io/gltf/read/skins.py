@@ -39,12 +39,11 @@ def read_skins(document: Document, nodes: Nodes, skins: list[int]) -> dict[int, 
     """Return skins, with other matrices where those of the file contradict the nodes."""
     in_scene = set(nodes.in_scene())
     stored = {}
-    for skin in skins:
-        users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
-        users = [i for i in users if i in in_scene] or users
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            stored[skin] = _read_skin(document, nodes, skin, users)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for skin in skins:
+            users = [i for i, n in enumerate(nodes.raw) if n.get("skin") == skin and "mesh" in n]
+            users = [i for i in users if i in in_scene] or users
+            stored[skin] = _read_skin(document, nodes, skin, users)
         mend([one for one in stored.values() if one.has_binds])
     for skin, one in stored.items():
         bad = np.flatnonzero(~invertible(one.inverse))
@@ -75,17 +74,10 @@ def _read_skin(document: Document, nodes: Nodes, skin: int, users: list[int]) ->
     number = {node: k for k, node in enumerate(joints)} | {-1: -1}
     above = [nodes.parents[node] for node in joints]
     relative = np.concatenate([nodes.relative_to(joints), np.eye(4)[None]])
-    return BoundSkin(
-        inverse,
-        shares,
-        nodes.world[joints],
-        relative[above] @ nodes.local[joints],
-        [number[nearest[node]] for node in above],
-        np.argsort(nodes.depth[joints], kind="stable").tolist(),
-        corners,
-        joints,
-        has_binds,
-    )
+    relative, world = relative[above] @ nodes.local[joints], nodes.world[joints]
+    parents = [number[nearest[node]] for node in above]
+    order = np.argsort(nodes.depth[joints], kind="stable").tolist()
+    return BoundSkin(inverse, shares, world, relative, parents, order, corners, joints, has_binds)
 
 
 def _vertices(

@@ -31,9 +31,8 @@ def with_faces(rig: Rig, remaining: NDArray[np.bool_], turned: NDArray[np.bool_]
                 remaining[stored.rows.start] = True
     if isinstance(source, GltfSource | BareSource):
         ends = np.concatenate([[0], np.cumsum(remaining)])
-        source = replace(
-            source, faces=tuple(_edited(s, remaining, turned, ends) for s in source.faces)
-        )
+        edited = tuple(_edited(s, remaining, turned, ends) for s in source.faces)
+        source = replace(source, faces=edited)
     return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces[remaining]), source=source)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .... import __version__
-from ....errors import CutcellError, MeshError, SkeletonError
+from ....errors import MeshError, SkeletonError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...materials.corners import vertex_normals
@@ -46,9 +46,7 @@ def check_fits(rig: Rig) -> None:
     _check_places(rig.skeleton.joints, rig.mesh, "its skeleton", SkeletonError)
 
 
-def _check_places(
-    points: NDArray, mesh: TriangleMesh, what: str, error: type[CutcellError]
-) -> None:
+def _check_places(points: NDArray, mesh: TriangleMesh, what: str, error: type[Exception]) -> None:
     """Refuse points that would move by much, for a mesh's size, when they are stored as float32."""
     with np.errstate(over="ignore"):
         size = np.ptp(mesh.bounds, axis=0).max()

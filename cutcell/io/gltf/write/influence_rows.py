@@ -76,7 +76,9 @@ def store_changed_rows(buffer: BufferWriter, weights: NDArray, rows: StoredRows,
     Component types stay if they can hold what changes. Sets are added as needed, never removed.
     """
     changed = np.flatnonzero(~rows.is_same)
-    share_type = _share_type(rows)
+    types = {one.dtype for one in rows.shares}
+    stays = len(types) == 1 and rows.is_same.mean() > LOCAL
+    share_type = types.pop() if stays else np.dtype("<f4")
     if share_type.kind == "f":
         joints, shares = pack_influences(weights[changed])
     else:
@@ -94,13 +96,6 @@ def store_changed_rows(buffer: BufferWriter, weights: NDArray, rows: StoredRows,
         if share_type.kind != "f":
             buffer.accessors[stored[f"WEIGHTS_{n}"]]["normalized"] = True
     return stored
-
-
-def _share_type(rows: StoredRows) -> np.dtype[Any]:
-    """Return the component type of weights that are saved."""
-    types = {one.dtype for one in rows.shares}
-    stays = len(types) == 1 and rows.is_same.mean() > LOCAL
-    return types.pop() if stays else np.dtype("<f4")
 
 
 def _converted(shares: NDArray, kind: np.dtype[Any]) -> NDArray:

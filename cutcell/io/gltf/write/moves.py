@@ -57,7 +57,7 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
             node["matrix"][12:15] = np.add(node["matrix"][12:15], shifts[i]).tolist()
         else:
             node["translation"] = np.add(node.get("translation", [0, 0, 0]), shifts[i]).tolist()
-    replaced = _binds(document, source.document, frame_shifts, mended)
+    replaced = _binds(document, rig, frame_shifts, mended)
     return replaced + _translations(document, source.document, shifts)
 
 
@@ -124,17 +124,14 @@ def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArra
 
 
 def _binds(
-    document: dict[str, Any],
-    loaded: Document,
-    frame_shifts: NDArray[np.float64],
-    mended: dict[int, dict[int, NDArray]],
+    document: dict[str, Any], rig: Rig, frame_shifts: NDArray, mended: dict[int, dict[int, NDArray]]
 ) -> list[NewValues]:
     replaced = []
     for i, skin in enumerate(document.get("skins", [])):
         shift = frame_shifts[skin.get("joints", [])]
         if not shift.any() and i not in mended:
             continue
-        values = read_binds(loaded, i)
+        values = read_binds(rig.source.document, i)
         for slot, matrix in mended.get(i, {}).items():
             values[slot] = matrix.T.ravel()
         values[: len(shift), 12:15] -= shift

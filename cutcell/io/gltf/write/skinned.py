@@ -59,7 +59,7 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
         for clip in rig.clips:
             add_clip(builder, rig, clip, first)
         document.buffers = [builder.buffer.finish()]
-    read = read_rig(document, stored.path)
+    read = read_rig(document)
     joints = replace(read.skeleton, deform=skeleton.deform)
     return rewritten(replace(read, skeleton=joints, weights=rig.weights), path)
 

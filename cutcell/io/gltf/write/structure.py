@@ -50,10 +50,9 @@ class _Edit:
         assert rig.origin is not None
         self.origin = rig.origin
         self.number = {int(f): j for j, f in enumerate(rig.origin) if f >= 0}
+        # The node and the inverse bind matrix of each of the rig's joints.
         self.node = {j: source.nodes[f] for f, j in self.number.items()}
-        """The node of each of the rig's joints."""
         self.bind = {j: self.inverse[f] for f, j in self.number.items()}
-        """The inverse bind matrix of each of the rig's joints."""
 
     def freeze_removed_joints(self) -> None:
         """Freeze removed joints relative to their parents."""
@@ -112,12 +111,12 @@ class _Edit:
 
     def skins(self, moves: list[NewValues]) -> tuple[list[StoredPart], list[NewValues]]:
         """Set the joints of the skins and their inverse bind matrices."""
-        source, replaced = self.source, list(moves)
-        columns: dict[int, list[int]] = {}
-        for part in source.parts:
-            if part.skin not in columns:
-                columns[part.skin] = self._skin(part, replaced)
-        return [replace(part, joints=columns[part.skin]) for part in source.parts], replaced
+        parts, replaced = self.source.parts, list(moves)
+        joints: dict[int, list[int]] = {}
+        for part in parts:
+            if part.skin not in joints:
+                joints[part.skin] = self._skin(part, replaced)
+        return [replace(part, joints=joints[part.skin]) for part in parts], replaced
 
     def _skin(self, part: StoredPart, replaced: list[NewValues]) -> list[int]:
         skin, loaded = self.document["skins"][part.skin], self.source.document
@@ -127,7 +126,6 @@ class _Edit:
             values = move.values.astype(np.float64)
             replaced.remove(move)
         skin.pop(BINDS, None)
-        old = loaded.json["skins"][part.skin][BINDS]
         slots = [slot for slot, f in enumerate(part.joints) if f in self.number]
         joints = [self.number[part.joints[slot]] for slot in slots]
         like = with_origin(self.rig.skeleton, self.origin)
@@ -144,10 +142,10 @@ class _Edit:
         to_rig = np.linalg.inv(self.source.inverse[part.joints[0]]) @ first
         rows = [values[slot] for slot in slots]
         rows += [(self.bind[j] @ to_rig).T.ravel() for j in added]
-        columns = joints + added
-        skin["joints"] = [self.node[j] for j in columns]
+        skin["joints"] = [self.node[j] for j in joints + added]
+        old = loaded.json["skins"][part.skin][BINDS]
         replaced.append(NewValues(skin, BINDS, np.array(rows).astype("<f4"), old))
-        return columns
+        return joints + added
 
     def _frame_above(self, f: int) -> NDArray[np.float64]:
         """Return the inverse bind matrix of a joint's parent; the world matrix for a root."""

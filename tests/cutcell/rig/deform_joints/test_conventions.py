@@ -26,9 +26,11 @@ SKELETONS = {
     ),
     "Auto-Rig Pro": (
         "root.x spine_01.x neck.x arm_stretch.l thigh_twist.l hand.l c_thigh_b.l c_ear_01.r "
-        "c_skull_01.x c_index2.l c_spine_01_bend.x index1.l",
+        "c_skull_01.x c_index2.l c_spine_01_bend.x index1.l forearm_twist.l c_arm_twist_offset.l",
         "c_traj c_pos c_root_master.x arm.l arm_fk.l arm_ik_nostr.l thigh_ref.l c_hand_ik.l "
-        "c_arms_pole.l c_spine_01.x c_foot_roll.l arm_scale_fix.l c_eye_target.x c_hand_fk.r",
+        "c_arms_pole.l c_spine_01.x c_foot_roll.l arm_scale_fix.l c_eye_target.x c_hand_fk.r "
+        "arm_twist.l neck_twist.x hand_rot_twist.l c_toes_index1.l c_root_bend.x foot_heel.l "
+        "toes_02.l c_arm_twk.l bend_all.l",
     ),
     "Advanced Skeleton": (
         "Root_M Spine1_M Chest_M Head_M Hip_R Knee_R Ankle_R IndexFinger3_R HipPart1_L Toes_R",
