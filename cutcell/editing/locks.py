@@ -42,8 +42,8 @@ def lock_joints(
     others = stored.copy()
     others[:, columns] = 0.0
     share, has_weight = weights.sum(axis=1, keepdims=True), stored.any(axis=1, keepdims=True)
+    np.divide(weights, share, out=weights, where=share > 0)  # first: they may be tiny
     weights *= np.where(has_weight, others.sum(axis=1, keepdims=True), 1.0)
-    np.divide(weights, share, out=weights, where=share > 0)
     is_empty = share[:, 0] <= 0
     weights[is_empty] = others[is_empty]
     weights[:, columns] = np.where(has_weight | (share > 0), stored[:, columns], before)

@@ -227,6 +227,12 @@ def test_locks_leave_no_vertex_empty():
     np.testing.assert_array_equal(everything, one_hot([1, 1, 1, 1], 5))
 
 
+def test_the_smallest_weights_share_what_a_lock_leaves():
+    tiny = np.array([[1.0, 0, 5e-324, 0, 0]])
+    locked = lock_joints(rig_of(np.full((1, 5), 0.2)), tiny, ["a"])
+    np.testing.assert_allclose(locked, [[0.2, 0, 0.8, 0, 0]])
+
+
 @pytest.mark.parametrize("influences", [1, 2, 3])
 def test_locked_joints_come_first_among_the_influences(influences):
     artist = random_weights(40, 5, kept=2)
