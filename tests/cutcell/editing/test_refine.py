@@ -228,9 +228,9 @@ def test_locks_leave_no_vertex_empty():
 
 
 def test_the_smallest_weights_share_what_a_lock_leaves():
-    tiny = np.array([[1.0, 0, 5e-324, 0, 0]])
-    locked = lock_joints(rig_of(np.full((1, 5), 0.2)), tiny, ["a"])
-    np.testing.assert_allclose(locked, [[0.2, 0, 0.8, 0, 0]])
+    tiny = np.array([[1.0, 0, 5e-324, 0, 0]] * 3)
+    locked = lock_joints(rig_of(np.full((3, 5), 0.2)), tiny, ["a"])
+    np.testing.assert_allclose(locked, [[0.2, 0, 0.8, 0, 0]] * 3)
 
 
 @pytest.mark.parametrize("influences", [1, 2, 3])
