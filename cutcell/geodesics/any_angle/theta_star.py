@@ -40,6 +40,7 @@ from .labels import (
     leave,
     limit_of,
     move_on,
+    settle_equals,
     sort,
 )
 from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
@@ -190,16 +191,15 @@ def _settle(
     """
     (indptr, indices), (head, scale) = adjacency, queue
     resolution, first_point, first_surface, nodes, _, _ = body
-    settled, time = 0, 0.0
+    settled, label = 0, END
     while bucket < len(head) - 1 and settled < most:
         sort(head, labels, bucket)
-        while head[bucket] != END and settled < most:
+        while label != END or (head[bucket] != END and settled < most):
+            # Equals are settled together: otherwise one could improve another if it came first.
+            label = settle_equals(head, labels, bucket) if label == END else label
             settled += 1
-            label = head[bucket]
-            leave(head, labels, label)
-            labels[label].after = SETTLED
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
-            time = max(time, labels[label].distance)
+            final = labels[label].distance - TIE
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
             # Most neighbours have this parent already. The others are listed without a branch,
             # which would be mispredicted.
@@ -211,9 +211,7 @@ def _settle(
                 e = ahead[k]
                 v = indices[e]
                 slot = find_room(labels, each, v, joint)
-                # Of labels at equal distances none improves another: any may be settled first.
-                is_tied = abs(labels[slot].distance - time) <= TIE
-                if labels[slot].after == SETTLED or is_tied:
+                if labels[slot].after == SETTLED:
                     continue
                 limit, other = limit_of(labels, slot, joint), parents[slot]
                 is_same = labels[slot].joint == joint
@@ -233,7 +231,7 @@ def _settle(
                     sees = u < first_surface
                 else:
                     sees = has_line_of_sight(
-                        body, labels, parents, each, u, v, position, grandparent, start, time - TIE
+                        body, labels, parents, each, u, v, position, grandparent, start, final
                     )
                 if not sees:
                     reached, parent = labels[label].distance + step, label
@@ -246,9 +244,8 @@ def _settle(
                 labels[slot].joint, parents[slot] = joint, parent
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
-                # One that is nearer than what is settled has its turn after its equals.
-                turn = max(reached, time + 2 * TIE)
-                later = max(bucket_of(head, scale, turn - origin), bucket)
-                join(head, labels, later, slot, turn if later == bucket else FIRST)
+                later = max(bucket_of(head, scale, reached - origin), bucket)
+                join(head, labels, later, slot, reached if later == bucket else FIRST)
+            label = labels[label].before
         bucket += head[bucket] == END
     return bucket, settled
