@@ -50,8 +50,7 @@ NEAR = 2
 """Lattice cells: how near a corner of a triangle must be to have line of sight to a parent. A
 distant one may lie behind a fold of the surface."""
 ON_BONE = 0.5
-"""Lattice cells: smallest distance of the nearest joint when distances are compared with
-it."""
+"""Lattice cells: smallest distance of the nearest joint that others are compared with."""
 BUCKETS = 4
 """Buckets for a unit of distance, times R squared: each is at most a hundredth of a cell wide."""
 SPAN = 1
@@ -143,8 +142,7 @@ def _propagate(
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     graph = adjacency, body, ranking.table, within
     arguments = *graph, front.each, labels, front.parents, front.least, (head, scale), ahead
-    last, origin, settled = len(head) - 1, 0.0, 0
-    bucket = 0
+    last, origin, bucket, settled = len(head) - 1, 0.0, 0, 0
     while True:
         bucket, count = _settle(*arguments, origin, bucket, BATCH)
         settled += count
@@ -186,7 +184,7 @@ def _settle(
 ):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
-    `each` is the number of labels a node has; `ahead` is a workspace for a node's edges.
+    `each` is the number of labels a node has; `ahead` is a workspace for a node's neighbours.
     Returns the bucket to continue with, and how many labels have been settled.
     """
     (indptr, indices), (head, scale) = adjacency, queue
@@ -201,32 +199,26 @@ def _settle(
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
             final = labels[label].distance - TIE
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
-            # Most neighbours have this parent already. The others are listed without a branch,
-            # which would be mispredicted.
+            # Most neighbours have this parent already. A branch on that would be mispredicted.
             count = 0
             for e in range(indptr[u], indptr[u + 1]):
-                ahead[count] = e
+                ahead[count] = indices[e]
                 count += not has_parent(parents, each, indices[e], grandparent)
             for k in range(count):
-                e = ahead[k]
-                v = indices[e]
+                v = ahead[k]
                 slot = find_room(labels, each, v, joint)
                 if labels[slot].after == SETTLED:
                     continue
                 limit, other = limit_of(labels, slot, joint), parents[slot]
-                is_same = labels[slot].joint == joint
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
-                if reached >= limit:
+                bound = within * max(least[v], ON_BONE / resolution) + TIE
+                if reached >= limit or reached > bound:
                     continue  # a path by way of u is no shorter
-                if reached > within * max(least[v], ON_BONE / resolution) + TIE:
-                    continue
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
-                if u < first_point:
-                    sees = False
-                elif v < first_point:
-                    sees = step * resolution < NEAR - TIE
+                if min(u, v) < first_point:
+                    sees = u >= first_point and step * resolution < NEAR - TIE
                 elif v >= first_surface:
                     sees = u < first_surface
                 else:
@@ -237,7 +229,7 @@ def _settle(
                     reached, parent = labels[label].distance + step, label
                     if reached >= limit:
                         continue
-                is_tie = is_same and reached >= limit - 2 * TIE
+                is_tie = labels[slot].joint == joint and reached >= limit - 2 * TIE
                 if is_tie and not is_preferred(body, bones, labels, each, parent, other, position):
                     continue
                 leave(head, labels, slot)
