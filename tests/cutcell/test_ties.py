@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cutcell import Rig, Skeleton, TriangleMesh, bind, load
+from cutcell.geodesics.any_angle.labels import END, SETTLED, join, no_labels, settle_equals
 from cutcell.geodesics.any_angle.line_of_sight import _neighbour, _traverse
 from cutcell.geodesics.bones import Bones
 from cutcell.geodesics.fallback import straight_to_nearest
@@ -126,3 +127,15 @@ def test_merged_points_lie_in_the_middle_whichever_comes_first():
     np.testing.assert_array_equal(welded[index][:, [1, 2, 0]], turned[other])
     assert 0 < abs(welded[index[0], 0] - 0.5) < 4e-7
     assert TIE < 4e-7
+
+
+def test_labels_at_one_distance_are_settled_together():
+    labels, _ = no_labels(4, 1)
+    labels["distance"] = [1 + TIE / 2, 2, 1, 1 + 3 * TIE]
+    head = np.full(1, END, np.int32)
+    for label in range(4):
+        join(head, labels, 0, label, labels[label]["distance"])
+    first = settle_equals(head, labels, 0)
+    assert {first, labels[first]["before"]} == {0, 2}
+    np.testing.assert_array_equal(labels["after"] == SETTLED, [True, False, True, False])
+    assert head[0] == 3

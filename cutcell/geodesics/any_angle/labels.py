@@ -121,6 +121,17 @@ def leave(head, labels, label):
     labels[label].after = LOOSE
 
 
+@compiled(inline="always")
+def settle_equals(head, labels, bucket):
+    """Settle the nearest labels of a sorted bucket; return the first, the next is `before` it."""
+    label, limit = END, labels[head[bucket]].distance + TIE
+    while head[bucket] != END and labels[head[bucket]].distance <= limit:
+        follower, label = label, head[bucket]
+        leave(head, labels, label)
+        labels[label].after, labels[label].before = SETTLED, follower
+    return label
+
+
 @compiled
 def move_on(head, scale, labels):
     """Redistribute the last bucket over all; return the distance at which they begin."""

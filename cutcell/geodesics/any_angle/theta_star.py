@@ -40,6 +40,7 @@ from .labels import (
     leave,
     limit_of,
     move_on,
+    settle_equals,
     sort,
 )
 from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
@@ -49,8 +50,7 @@ NEAR = 2
 """Lattice cells: how near a corner of a triangle must be to have line of sight to a parent. A
 distant one may lie behind a fold of the surface."""
 ON_BONE = 0.5
-"""Lattice cells: smallest distance of the nearest joint when distances are compared with
-it."""
+"""Lattice cells: smallest distance of the nearest joint that others are compared with."""
 BUCKETS = 4
 """Buckets for a unit of distance, times R squared: each is at most a hundredth of a cell wide."""
 SPAN = 1
@@ -142,8 +142,7 @@ def _propagate(
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     graph = adjacency, body, ranking.table, within
     arguments = *graph, front.each, labels, front.parents, front.least, (head, scale), ahead
-    last, origin, settled = len(head) - 1, 0.0, 0
-    bucket = 0
+    last, origin, bucket, settled = len(head) - 1, 0.0, 0, 0
     while True:
         bucket, count = _settle(*arguments, origin, bucket, BATCH)
         settled += count
@@ -185,70 +184,60 @@ def _settle(
 ):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
-    `each` is the number of labels a node has; `ahead` is a workspace for a node's edges.
+    `each` is the number of labels a node has; `ahead` is a workspace for a node's neighbours.
     Returns the bucket to continue with, and how many labels have been settled.
     """
     (indptr, indices), (head, scale) = adjacency, queue
     resolution, first_point, first_surface, nodes, _, _ = body
-    settled, time = 0, 0.0
+    settled, label = 0, END
     while bucket < len(head) - 1 and settled < most:
         sort(head, labels, bucket)
-        while head[bucket] != END and settled < most:
+        while label != END or (head[bucket] != END and settled < most):
+            # Equals are settled together: otherwise one could improve another if it came first.
+            label = settle_equals(head, labels, bucket) if label == END else label
             settled += 1
-            label = head[bucket]
-            leave(head, labels, label)
-            labels[label].after = SETTLED
             u, joint, grandparent = label // each, labels[label].joint, parents[label]
-            time = max(time, labels[label].distance)
+            final = labels[label].distance - TIE
             to_grandparent = labels[grandparent].distance if grandparent >= 0 else 0.0
-            # Most neighbours have this parent already. The others are listed without a branch,
-            # which would be mispredicted.
+            # Most neighbours have this parent already. A branch on that would be mispredicted.
             count = 0
             for e in range(indptr[u], indptr[u + 1]):
-                ahead[count] = e
+                ahead[count] = indices[e]
                 count += not has_parent(parents, each, indices[e], grandparent)
             for k in range(count):
-                e = ahead[k]
-                v = indices[e]
+                v = ahead[k]
                 slot = find_room(labels, each, v, joint)
-                # Of labels at equal distances none improves another: any may be settled first.
-                is_tied = abs(labels[slot].distance - time) <= TIE
-                if labels[slot].after == SETTLED or is_tied:
+                if labels[slot].after == SETTLED:
                     continue
                 limit, other = limit_of(labels, slot, joint), parents[slot]
-                is_same = labels[slot].joint == joint
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
-                if reached >= limit:
+                bound = within * max(least[v], ON_BONE / resolution) + TIE
+                if reached >= limit or reached > bound:
                     continue  # a path by way of u is no shorter
-                if reached > within * max(least[v], ON_BONE / resolution) + TIE:
-                    continue
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
-                if u < first_point:
-                    sees = False
-                elif v < first_point:
-                    sees = step * resolution < NEAR - TIE
+                if min(u, v) < first_point:
+                    sees = u >= first_point and step * resolution < NEAR - TIE
                 elif v >= first_surface:
                     sees = u < first_surface
                 else:
                     sees = has_line_of_sight(
-                        body, labels, parents, each, u, v, position, grandparent, start, time - TIE
+                        body, labels, parents, each, u, v, position, grandparent, start, final
                     )
                 if not sees:
                     reached, parent = labels[label].distance + step, label
                     if reached >= limit:
                         continue
-                is_tie = is_same and reached >= limit - 2 * TIE
+                is_tie = labels[slot].joint == joint and reached >= limit - 2 * TIE
                 if is_tie and not is_preferred(body, bones, labels, each, parent, other, position):
                     continue
                 leave(head, labels, slot)
                 labels[slot].joint, parents[slot] = joint, parent
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
-                # One that is nearer than what is settled has its turn after its equals.
-                turn = max(reached, time + 2 * TIE)
-                later = max(bucket_of(head, scale, turn - origin), bucket)
-                join(head, labels, later, slot, turn if later == bucket else FIRST)
+                later = max(bucket_of(head, scale, reached - origin), bucket)
+                join(head, labels, later, slot, reached if later == bucket else FIRST)
+            label = labels[label].before
         bucket += head[bucket] == END
     return bucket, settled
