@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.edges import find_edges
-from ...geometry.triangles import label_components, normals
-from .patches import NONE
+from ...geometry.triangles import normals
+from .patches import NONE, find_patches
 
 OPEN = 0.5
 """Faces are a sheet, which encloses nothing, if their area vectors sum to this share of the area.
@@ -40,14 +40,17 @@ def find_reversed(
     if not is_pair.any():
         return is_reversed
     first, second = chosen[order[is_pair[which[order]]]].reshape(-1, 2).T
-    patch = label_components(faces[first], len(vertices))[faces[first, 0]]
-    areas = normals(vertices[faces[first]])
-    total = np.bincount(patch, np.linalg.norm(areas, axis=1))
+    # Which of two faces comes first says nothing: without the others, patches are oriented alike.
+    single = faces.copy()
+    single[second] = faces[second, :1]
+    areas = normals(vertices[single])
+    sizes = np.linalg.norm(areas, axis=1)
+    flips, patch, *_ = find_patches(vertices, single, find_edges(single).partner, sizes)
+    areas[flips] *= -1
     sums = np.stack([np.bincount(patch, column) for column in areas.T], axis=1)
-    is_sheet = np.linalg.norm(sums, axis=1) >= OPEN * total
-    single, is_single = faces.copy(), np.ones(len(faces) + 1, np.bool_)
-    single[second], is_single[first], is_single[NONE] = faces[second, :1], False, False
-    goes_on = is_single[find_edges(single).partner.reshape(-1, 3)[first] // 3].any(axis=1)
+    is_sheet = np.linalg.norm(sums, axis=1) >= OPEN * np.bincount(patch, sizes)
+    goes_on = np.ones(len(faces), np.bool_)
+    goes_on[first] = goes_on[second] = False
     is_sheet[patch[goes_on]] = False
-    is_reversed[second[~is_sheet[patch]]] = True
+    is_reversed[second[~is_sheet[patch[first]]]] = True
     return is_reversed
