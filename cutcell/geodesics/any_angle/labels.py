@@ -54,9 +54,8 @@ def find_room(labels, each, v, joint):
     existing, farthest = -1, v * each
     for label in range(v * each, v * each + each):
         existing = label if labels[label].joint == joint else existing
-        farther = labels[label].distance - labels[farthest].distance
-        is_last = labels[label].joint > labels[farthest].joint
-        farthest = label if farther > (-TIE if is_last else TIE) else farthest
+        limit = TIE if labels[label].joint < labels[farthest].joint else -TIE
+        farthest = label if labels[label].distance > labels[farthest].distance + limit else farthest
     return existing if existing >= 0 else farthest
 
 

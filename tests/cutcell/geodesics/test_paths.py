@@ -45,7 +45,7 @@ def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
     far = np.argsort(-field[graph.vertex_node])[: len(graph.vertex_node) // 2 : 41]
     for vertex in far:
         path = trace_path(distances, 0, int(vertex), field).points
-        assert path_length(path) == pytest.approx(field[graph.vertex_node[vertex]], rel=0.1)
+        assert path_length(path) == pytest.approx(field[graph.vertex_node[vertex]], rel=0.13)
         assert len(path) <= 9
         steps = np.linspace(0, 1, 19)[:, None, None]
         between = (path[:-1] + steps * (path[1:] - path[:-1])).reshape(-1, 3)
