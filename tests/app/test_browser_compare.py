@@ -23,6 +23,8 @@ def test_methods_of_a_real_character_are_compared(visit):
     methods_stand_side_by_side_with_their_measures(visit)
     one_camera_turns_all(visit)
     differences_errors_and_poses_are_seen(visit)
+    visit.button("Computed").click()
+    visit.settle()
     the_largest_disagreement_is_mended(visit)
     settings_are_swept_and_a_point_is_chosen(visit)
 
@@ -46,6 +48,11 @@ def methods_stand_side_by_side_with_their_measures(visit):
     assert 0 < l1 < 2
     assert deformation > 0
     assert seconds >= 0
+    visit.settle()
+    assert captions(visit) == ["From file", "cutcell (animation)", "Euclidean"]
+    box(visit, "cutcell (animation)").uncheck()
+    box(visit, "Current weights").check()
+    measured(visit, "Current weights")
     visit.settle()
     assert captions(visit) == ["Current weights", "From file", "Euclidean"]
     three = visit.look()

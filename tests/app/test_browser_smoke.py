@@ -20,6 +20,8 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     before = visit.look()
     visit.open(path)
     assert changed(before, visit.look()) > 0.02
+    visit.button("Computed").click()
+    visit.settle()
     with visit.page.expect_download() as download:
         visit.button("Export GLB", exact=False).click()
     bound = tmp_path / download.value.suggested_filename

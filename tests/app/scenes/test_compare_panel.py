@@ -83,7 +83,7 @@ def test_a_step_of_a_lesson_gives_captions(state):
     )
     state.param.update(step=0, minus="euclidean")
     assert resolve(state).views == (
-        "cutcell (current settings) − B",
+        "Current weights − B",
         "From file − B",
         "B − itself",
     )
