@@ -137,7 +137,7 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.page.wait_for_function("__cutcell.report().actors.voxels")
     expect(visit.button("Cut Z")).to_have_count(0)
     visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] > 0.3")
-    visit.expect_text(re.compile(r"^Straight line · \d\.\d+$"))
+    visit.expect_text(re.compile(r"^Straight line · \d\.\d+ \w+$"))
     paths = visit.report()["actors"]
     assert paths["path 0"]["points"] != paths["path 1"]["points"]
 
