@@ -9,7 +9,7 @@ import numpy as np
 import ufbx
 
 from ..geometry.polygons import cut_polygons
-from .fbx_names import kept, label, read_names
+from .fbx_names import label, read_names, retain
 from .scene import Scene, upper_left
 
 FRAMES_A_SECOND = 30.0
@@ -20,15 +20,15 @@ def read(data):
     """Read a file; shape data (b,)."""
     try:
         file = ufbx.load_memory(data.tobytes(), **options())
-        warnings = [one.type for one in kept(kept([file])[0].metadata.warnings)]
+        warnings = [one.type for one in retain(retain([file])[0].metadata.warnings)]
         is_utf8 = ufbx.WarningType.BAD_UNICODE not in warnings
         if not is_utf8:
             file = ufbx.load_memory(data.tobytes(), **options(), retain_dom=True)
     except ufbx.UfbxError as error:
         raise RuntimeError(f"it is damaged ({error})") from None
-    kept([file])
-    scene, nodes = Scene(), kept(file.nodes)
-    named = [*nodes, *kept(file.meshes), *kept(file.anim_stacks), *kept(file.materials)]
+    retain([file])
+    scene, nodes = Scene(), retain(file.nodes)
+    named = [*nodes, *retain(file.meshes), *retain(file.anim_stacks), *retain(file.materials)]
     notes = read_names([] if is_utf8 else named)
     place = {node.element_id: i for i, node in enumerate(nodes)}
     for node in nodes:
@@ -37,12 +37,12 @@ def read(data):
         local = node.local_transform
         row = [*local.translation, *local.rotation, *local.scale]
         scene.add_node(label(node), parent, row, not node.visible, is_bone)
-    for mesh in kept(file.meshes):
-        places = kept(mesh.instances)
+    for mesh in retain(file.meshes):
+        places = retain(mesh.instances)
         if not mesh.num_faces or not places:
             continue
         shape, corners, polygons = geometry(mesh)
-        skins = kept(mesh.skin_deformers)
+        skins = retain(mesh.skin_deformers)
         name = label(places[0]) or label(mesh)
         if skins and len(places) > 1:
             others = ", ".join(label(node) for node in places[1:][:6])
@@ -98,7 +98,7 @@ def geometry(mesh):
 
 def dropped(mesh):
     """Return what of a mesh is not read."""
-    skinned = [skin.skinning_method for skin in kept(mesh.skin_deformers)]
+    skinned = [skin.skinning_method for skin in retain(mesh.skin_deformers)]
     parts = {
         "morph targets": len(mesh.blend_deformers),
         "dual-quaternion skinning": any(method in DUAL for method in skinned),
@@ -111,8 +111,8 @@ def dropped(mesh):
 
 def influences(skins, place):
     """Return the joints of a mesh, their inverse bind matrices, and the weights."""
-    clusters = [c for skin in skins for c in kept(skin.clusters)]
-    bones = kept(c.bone_node for c in clusters)
+    clusters = [c for skin in skins for c in retain(skin.clusters)]
+    bones = retain(c.bone_node for c in clusters)
     joints = list(dict.fromkeys(place[b.element_id] for b in bones if b is not None))
     inverse = [np.eye(4)] * len(joints)
     rows, columns, values = [], [], []
@@ -135,7 +135,7 @@ def influences(skins, place):
 
 def add_clips(scene, file, place):
     """Add every animation as keys of its nodes, from time 0 on, to be joined by lines."""
-    for stack in kept(file.anim_stacks):
+    for stack in retain(file.anim_stacks):
         baked = ufbx.bake_anim(
             file,
             stack.anim,
@@ -145,8 +145,8 @@ def add_clips(scene, file, place):
             key_reduction_enabled=True,
             key_reduction_rotation=True,
         )
-        kept([baked])
-        for node in kept(baked.nodes):
+        retain([baked])
+        for node in retain(baked.nodes):
             moves = (node.translation_keys, node.rotation_keys, node.scale_keys)
             for path, moved in enumerate(moves):
                 rows = np.array([(key.time, *key.value) for key in moved])
@@ -163,7 +163,7 @@ UNSEEN = 0.02
 
 def describe(scene, material):
     """Describe a material for `Scene.material`; its reader is the texture."""
-    kept([material])
+    retain([material])
     texture, image = base_texture(material), -1
     if texture is not None:
         names = (texture.relative_filename, texture.filename, texture.absolute_filename)
@@ -178,8 +178,8 @@ def base_texture(material):
         texture = channel.texture
         if texture is None or not channel.texture_enabled:
             continue
-        kept([texture])
-        for one in [texture, *kept(texture.file_textures)]:
+        retain([texture])
+        for one in [texture, *retain(texture.file_textures)]:
             if one.type == ufbx.TextureType.FILE and (one.filename or len(one.content)):
                 return one
     return None
@@ -217,7 +217,7 @@ def is_cut(material):
 
 def surface(mesh, node, corners, polygons, scene):
     """Return what colours the triangles of a mesh at a node; corners (m, 3), polygons (m,)."""
-    materials = kept(node.materials) or kept(mesh.materials)
+    materials = retain(node.materials) or retain(mesh.materials)
     numbers = [
         -1 if one is None else scene.material(one.element_id, lambda one=one: describe(scene, one))
         for one in materials
@@ -231,7 +231,7 @@ def surface(mesh, node, corners, polygons, scene):
         colors = at_corners(mesh.vertex_color, corners, (1, 1, 1, 1))[..., :3]
         arrays["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
     if mesh.vertex_uv.exists:
-        sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
+        sets = {one.name: one.vertex_uv for one in retain(mesh.uv_sets)}
         places = upper_left(at_corners(mesh.vertex_uv, corners, (0, 0)))
         for k in np.unique(material[material >= 0]).tolist():
             texture, rows = scene.reader(k), np.flatnonzero(material == k)

@@ -22,7 +22,7 @@ NAMES: dict[int, str] = {}
 """Names that are not UTF-8, by the numbers of their elements."""
 
 
-def kept(elements):
+def retain(elements):
     """Return a list's elements; ufbx' bindings let go of them too often, so they stay for good."""
     KEEP.append(list(elements))
     return KEEP[-1]
@@ -39,7 +39,7 @@ def read_names(elements):
     raw = {}
     for one in elements:
         if "\ufffd" in one.name:  # for what ufbx writes such bytes
-            values = kept(kept([one.dom_node])[0].values)
+            values = retain(retain([one.dom_node])[0].values)
             name = next(v.value_blob for v in values if v.type == ufbx.DomValueType.STRING)
             raw[one.element_id] = CLASS.sub(b"", name)
     if not raw:
