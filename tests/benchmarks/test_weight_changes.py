@@ -13,10 +13,10 @@ def test_a_changed_character_is_listed_with_its_cause(small, capsys, tmp_path, m
     import cutcell
 
     rig = cutcell.load(small)
-    monkeypatch.setattr(weight_changes, "rigs_of", lambda group: [("small", rig)])
+    monkeypatch.setattr(weight_changes, "rigs_of", lambda group: [("khronos_small", rig)])
     for folder in ("old", "new"):
         weight_changes.main(["record", str(tmp_path / folder), "rigs", "--resolution", "8"])
-    path = tmp_path / "new" / "rigs" / "small.known.npz"
+    path = tmp_path / "new" / "rigs" / "khronos_small.known.npz"
     with np.load(path) as stored:
         arrays = dict(stored)
     arrays["weights"] = np.roll(arrays["weights"], 1, axis=1)
@@ -33,7 +33,7 @@ def test_a_changed_character_is_listed_with_its_cause(small, capsys, tmp_path, m
         ("fresh", "new", "0 : 0"),
     ] * 2
     (row,) = sets["The worst characters"]
-    assert row["character"] == "small"
+    assert row["character"] == "khronos_small"
     (row,) = sets["rigs"]
-    assert (row["character"], row["joints"]) == ("small", "known")
+    assert (row["character"], row["joints"]) == ("khronos_small", "known")
     assert row["differs first in"] == "bones and components"
