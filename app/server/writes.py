@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from bokeh.document import Document
 from panel.io import document
+from tornado.websocket import WebSocketClosedError
 
 _write_waiting = document._dispatch_msgs
 
 
 async def write_all(doc: Document) -> None:
     """Write the messages that wait for the browser of a document, and those that come meanwhile."""
-    await _write_waiting(doc)
-    while doc in document._WRITE_MSGS and doc not in document._WRITE_BLOCK:
-        document._WRITE_BLOCK[doc] = True
+    try:
         await _write_waiting(doc)
+        while doc in document._WRITE_MSGS and doc not in document._WRITE_BLOCK:
+            document._WRITE_BLOCK[doc] = True
+            await _write_waiting(doc)
+    except WebSocketClosedError:  # The browser left between two parts of a message.
+        document._WRITE_BLOCK.pop(doc, None)
 
 
 def leave_none_behind() -> None:

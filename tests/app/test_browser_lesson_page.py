@@ -189,7 +189,9 @@ def check_two_sliders(alone, card):
     expect(resolution).to_have_text("20")
     alone.settle()
     expect(neighbours).to_have_text("any angle")
-    expect(card.get_by_role("img", name="error in % over R")).to_be_visible()
+    expect(
+        card.get_by_role("img", name="mean error in %, against any angle at R = 192 over R")
+    ).to_be_visible()
 
 
 @pytest.mark.nightly

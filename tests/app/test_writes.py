@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 from bokeh.document import Document
 from panel.io import document
+from tornado.websocket import WebSocketClosedError
 
 from cutcell_app.server.writes import leave_none_behind
 
@@ -59,4 +60,18 @@ def test_a_message_that_comes_when_a_write_ends_is_written(connection):
 
     asyncio.run(page())
     assert doc not in document._WRITE_MSGS
+    assert doc not in document._WRITE_BLOCK, "later ones are written at once"
+
+
+def test_a_browser_that_leaves_between_two_parts_of_a_message_is_no_error(connection, monkeypatch):
+    leave_none_behind()
+    doc = Document()
+
+    def leave(connection, msg):
+        raise WebSocketClosedError
+
+    monkeypatch.setitem(document.extra_socket_handlers, Socket, leave)
+    document._WRITE_MSGS[doc] = {connection: ["first"]}
+    document._WRITE_BLOCK[doc] = True
+    asyncio.run(document._dispatch_msgs(doc))
     assert doc not in document._WRITE_BLOCK, "later ones are written at once"
