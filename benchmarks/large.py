@@ -20,9 +20,7 @@ import numpy as np
 import trimesh
 
 import cutcell
-from cutcell.geometry.weld import weld
 from cutcell.weights.rig_falloff import diffusion
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from cutcell_lab.benchmarks.rigs import ROOT
 from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
@@ -34,8 +32,7 @@ STAGES = ("graph", "distances", "weights")
 
 def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
     """Weld a rig's mesh and divide each triangle into four, repeatedly."""
-    vertices, index = weld(rig.mesh.vertices)
-    faces = index[rig.mesh.faces]
+    vertices, faces = rig.mesh.cube.to_file(rig.mesh.welded.points), rig.mesh.welded.faces
     for _ in range(times):
         vertices, faces = trimesh.remesh.subdivide(vertices, faces)
     return cutcell.Rig(cutcell.TriangleMesh(vertices, faces), rig.skeleton)
@@ -44,12 +41,12 @@ def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
 def exact_weights(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights, before they are pruned, by factors of the whole matrix."""
     with patch.object(diffusion, "MIN_COARSENING", 0):
-        return unpruned(binding, SurfaceOperators.of(binding.graph))
+        return unpruned(binding)
 
 
-def unpruned(binding: cutcell.Binding, surface: SurfaceOperators) -> np.ndarray:
+def unpruned(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights of all joints that distances were measured from."""
-    return cutcell.skinning_weights(binding.distances, surface=surface, threshold=0)
+    return cutcell.skinning_weights(binding.distances, threshold=0)
 
 
 @dataclass
@@ -83,7 +80,7 @@ def measure(rig: cutcell.Rig, is_compared: bool) -> Measured:
     diagnosis = perf_counter() - begin
     difference = None
     if is_compared:
-        outcome = unpruned(binding, SurfaceOperators.of(binding.graph))
+        outcome = unpruned(binding)
         difference = np.abs(outcome - exact_weights(binding))
     sizes = len(rig.mesh.faces), binding.seconds
     return Measured(*sizes, processor, peak, diagnosis, difference)

@@ -18,7 +18,7 @@ def prepare(mesh: TriangleMesh, resolution: int) -> Surface:
 
 def cast(prepared: Surface) -> list[RayHits]:
     """Cast the rays of all three axes."""
-    return cast_all_rays(prepared.vertices, prepared.faces, prepared.resolution)
+    return cast_all_rays(prepared.mesh.points, prepared.mesh.faces, prepared.resolution)
 
 
 def decide(prepared: Surface, hits: list[RayHits], threshold: float = 0.5) -> list[InsideIntervals]:

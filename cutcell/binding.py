@@ -94,8 +94,9 @@ def binding_steps(
         return graph or build_graph(rig.mesh, method=method, progress=context.progress)
 
     def measure(context: Context) -> BoneDistances:
-        # Another thread computes what the weights need of the surface.
-        surface = submit(context.operators) if method.falloff == "rig" else None
+        mesh, ready = context.graph.mesh, None
+        if method.falloff == "rig":  # another thread computes what the weights need of the surface
+            ready = submit(lambda: (mesh.component, mesh.normals, mesh.areas, mesh.stiffness))
         measured = distances or bone_distances(
             context.graph,
             rig.skeleton,
@@ -105,8 +106,8 @@ def binding_steps(
             allowed=rig.allowed,
             progress=context.progress,
         )
-        if surface is not None:
-            surface()
+        if ready is not None:
+            ready()
         return measured
 
     first = Step("graph", build, "graph"), Step("distances", measure, "distances")

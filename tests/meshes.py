@@ -3,6 +3,13 @@
 import numpy as np
 import trimesh
 
+from cutcell.geometry.welded import WeldedMesh
+
+
+def boundary(faces):
+    vertices = np.zeros((int(faces.max()) + 1, 3))
+    return WeldedMesh.of(vertices, np.asarray(faces, np.int32)).boundary
+
 
 def box(low=0.25, high=0.75):
     mesh = trimesh.creation.box(extents=(1, 1, 1))

@@ -4,12 +4,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from cutcell.geometry.edges import find_edges
 from cutcell.geometry.triangles import normals
-from cutcell.geometry.weld import weld
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.pose.skin import Skin
 from cutcell.rig import Rig, TriangleMesh
 
@@ -218,53 +215,38 @@ def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> A
         "surface",
         points,
         faces,
-        normals=smooth_normals(points, faces),
+        normals=smooth_normals(points, faces, mesh.welded.index),
         skin=skin,
-        closed=is_closed(points, faces),
+        closed=is_closed(mesh.welded),
         **style,
     )
 
 
-def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
-    """Return whether faces enclose a volume: no border, and every part faces outwards.
-
-    Vertices at the same place are one.
-
-    Parameters
-    ----------
-    points : array, shape (n, 3)
-    faces : array, shape (m, 3)
-    """
-    corners = weld(points, 0.0)[1][faces]
-    whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    corners = corners[whole]
-    if not len(corners):
+def is_closed(mesh: WeldedMesh) -> bool:
+    """Return whether a mesh encloses a volume: no border, and every part faces outwards."""
+    if not mesh.is_closed or not mesh.is_whole.any():
         return False
-    edges, incidence, _ = find_edges(corners)
-    if incidence.any():
-        return False
-    shape = (len(points), len(points))
-    _, part = connected_components(coo_array((np.ones(len(edges)), edges.T), shape))
-    three = points[faces[whole]]
-    volume = np.einsum("fi,fi->f", three[:, 0], np.cross(three[:, 1], three[:, 2]))
-    volumes = np.bincount(part[corners[:, 0]], volume)
-    return bool((volumes[np.unique(part[corners])] > 0).all())
+    faces = mesh.faces[mesh.is_whole]
+    part, (a, b, c) = mesh.component[faces[:, 0]], mesh.points[faces].transpose(1, 0, 2)
+    volumes = np.bincount(part, np.einsum("fi,fi->f", a, np.cross(b, c)))
+    return bool((volumes[np.unique(part)] > 0).all())
 
 
-def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
+def smooth_normals(
+    points: NDArray[np.float64], faces: NDArray, index: NDArray[np.int32]
+) -> NDArray[np.float64]:
     """Return unit normals (n, 3) that are smooth over seams and sharp over creases.
 
-    Vertices at the same place share their normals where these differ by less than 45
-    degrees: exporters split vertices at texture seams as well as at hard edges.
+    Vertices that are welded to one, `index` (n,), share their normals where these differ by less
+    than 45 degrees: exporters split vertices at texture seams as well as at hard edges.
     """
     area = normals(points[faces])
     face_sum = np.zeros_like(points)
     for k in range(3):
         np.add.at(face_sum, faces[:, k], area)
     unit = face_sum / np.maximum(np.linalg.norm(face_sum, axis=1, keepdims=True), 1e-300)
-    group = weld(points, 0.0)[1]
-    order = np.argsort(group, kind="stable")
-    group = group[order]
+    order = np.argsort(index, kind="stable")
+    group = index[order]
     total = face_sum.copy()
     for shift in range(1, min(int(np.bincount(group).max()), MAX_AT_A_PLACE)):
         a, b = order[:-shift], order[shift:]

@@ -16,6 +16,7 @@ from cutcell.geodesics.bones import Sources
 from cutcell.geodesics.nearest import NodeTree
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph
 from cutcell.graph.sections import RaySlice, plane_outline, slice_rays
 from cutcell.method import Method
@@ -222,7 +223,7 @@ def _part(graph: CutCellGraph, normal: int, level: float) -> CutCellGraph:
         lengths=graph.lengths[edges],
         edge_kind=graph.edge_kind[edges],
         triangle=graph.triangle[chosen],
-        vertex_node=np.arange(corners, dtype=np.int32),
+        mesh=WeldedMesh.of(graph.nodes[chosen][:corners], graph.faces),
     )
 
 

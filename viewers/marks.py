@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose.skin import Skin
-from cutcell.rig import Rig
+from cutcell.rig import Rig, TriangleMesh
 
 from .character import OCTAHEDRON, bone_frames, diagonal, smooth_normals, to_scene
 from .description import Actor
@@ -84,7 +84,8 @@ def outline(
 def path_tube(rig: Rig, path: ArrayLike) -> Actor:
     """Return a tube along a path (p, 3) in the scene's space."""
     points, faces = tube(np.asarray(path, float), TUBE * diagonal(rig))
-    return Actor.solid(points, faces, normals=smooth_normals(points, faces), color=MARK)
+    index = TriangleMesh(points, faces).welded.index
+    return Actor.solid(points, faces, normals=smooth_normals(points, faces, index), color=MARK)
 
 
 def tube(path: NDArray[np.float64], radius: float, sides: int = 10) -> tuple[NDArray, NDArray]:

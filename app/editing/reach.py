@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from cutcell.geometry.edges import find_edges
-from cutcell.geometry.weld import WELD_TOLERANCE, weld
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.rig import TriangleMesh
 
 
@@ -23,23 +22,23 @@ class SurfaceReach:
     """
 
     points: NDArray[np.float64]  # (k, 3), welded vertices in the file's units
-    faces: NDArray[np.int32]  # (m, 3), of welded vertices
-    index: NDArray[np.int32]  # (n,), the welded vertex of each vertex of the mesh
+    mesh: WeldedMesh
     lengths: csr_array  # (k, k)
 
     @classmethod
     def of(cls, mesh: TriangleMesh) -> SurfaceReach:
-        """Weld a mesh, and find the paths over it."""
-        size = float(np.ptp(mesh.bounds, axis=0).max())
-        points, index = weld(mesh.vertices, WELD_TOLERANCE * size)
-        faces = np.ascontiguousarray(index[mesh.faces])
-        mesh_edges = find_edges(faces)
-        edges, partner = mesh_edges.edges, mesh_edges.partner
-        sides = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-        across, straight = _across(points, faces, partner)
-        pairs = np.concatenate([edges, across])
-        lengths = _symmetric(pairs, np.concatenate([sides, straight]), len(points))
-        return cls(points, faces, index, lengths)
+        """Find the paths over a mesh."""
+        welded, size = mesh.welded, mesh.cube.size
+        across, straight = _across(welded.points, welded.faces, welded.edges.partner)
+        pairs = np.concatenate([welded.edges.edges, across])
+        lengths = np.concatenate([welded.edge_lengths, straight]) * size
+        points = mesh.cube.to_file(welded.points)
+        return cls(points, welded, _symmetric(pairs, lengths, len(points)))
+
+    @property
+    def index(self) -> NDArray[np.int32]:
+        """The welded vertex of each vertex of the mesh, shape (n,)."""
+        return self.mesh.index
 
     def distances(
         self, vertices: NDArray[np.integer], begin: NDArray[np.float64], limit: float

@@ -17,7 +17,7 @@ from cutcell.editing.locks import joint_index
 from cutcell.editing.selected import Selected
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import ParameterError
-from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
+from cutcell.geometry.laplacian import cotangent_laplacian
 from cutcell.rig import Rig, TriangleMesh
 from cutcell.rig.checks import check_choice, check_number
 
@@ -77,7 +77,7 @@ class PaintSurface:
     """Data that all strokes over one mesh share."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        self.reach = SurfaceReach.of(mesh)
+        self.reach, self.size = SurfaceReach.of(mesh), mesh.cube.size
 
     def prepare(self) -> None:
         """Compute what strokes need, so that the first one does not wait for it."""
@@ -86,7 +86,7 @@ class PaintSurface:
     @cached_property
     def _used(self) -> tuple[NDArray[np.int32], Any]:
         """The welded vertices that faces have, and a tree of them."""
-        used = np.unique(self.reach.faces)
+        used = np.unique(self.reach.mesh.faces)
         return used, cKDTree(self.reach.points[used])
 
     def nearest(
@@ -101,15 +101,13 @@ class PaintSurface:
     @cached_property
     def diffusion(self) -> tuple[csr_array, NDArray[np.float64]]:
         """The Laplacian with no negative weight, so that nothing overshoots; and areas."""
-        points, faces = self.reach.points, self.reach.faces
-        # Scaled to unit size, which the tolerances of the kernels assume.
-        size = float(np.ptp(points, axis=0).max()) or 1.0
-        flow = cotangent_laplacian(points / size, faces)
+        mesh = self.reach.mesh
+        flow = cotangent_laplacian(mesh.points, mesh.faces)
         flow.setdiag(0)
         flow.data = np.maximum(-flow.data, 0)
         laplacian = csr_array(diags_array(flow.sum(axis=1)) - flow)
-        areas = vertex_areas(points / size, faces)
-        return laplacian, np.maximum(areas, MIN_AREA * areas.max()) * size**2
+        areas = np.maximum(mesh.areas, MIN_AREA * mesh.areas.max())
+        return laplacian, areas * self.size**2
 
 
 class Stroke:
@@ -230,8 +228,7 @@ class Stroke:
         inner = np.flatnonzero(cover > 0)
         rows = laplacian[inner]
         around = np.union1d(rows.indices, inner)
-        first = np.zeros(len(reach.points), np.intp)
-        first[reach.index[::-1]] = np.arange(len(reach.index))[::-1]
+        first = reach.mesh.first
         start = self._weights[first[around]]
         used = np.flatnonzero(start.any(axis=0))
         is_inner = cover[around] > 0

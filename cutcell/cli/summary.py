@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances
-from ..geometry.triangles import face_edges, label_components
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig import Rig, Skeleton, TriangleMesh
 
@@ -19,18 +18,16 @@ KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 
 def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
     """Count the elements of a mesh once equal positions are welded."""
-    faces = graph.faces
-    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # welded to nothing
-    uses = np.unique(face_edges(faces), axis=0, return_counts=True)[1]
-    welded = int((graph.node_kind == MESH).sum())
+    welded = graph.mesh
+    uses = welded.edges.uses
     return {
         "vertices": len(mesh.vertices),
-        "welded_vertices": welded,
+        "welded_vertices": len(welded.points),
         "triangles": len(mesh.faces),
-        "components": len(np.unique(label_components(faces, welded)[faces])),
+        "components": len(np.unique(welded.component[welded.faces[welded.is_whole]])),
         "open_edges": int((uses == 1).sum()),
         "non_manifold_edges": int((uses > 2).sum()),
-        "closed": bool(graph.is_closed),
+        "closed": welded.is_closed,
     }
 
 

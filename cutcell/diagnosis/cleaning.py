@@ -157,7 +157,7 @@ def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.flo
     """Return the remaining part of each weight, shape (n, j)."""
     welded, distances = subject.welded, subject.distances
     through = distances.all_joints(subject.progress).T
-    at_welded = np.zeros((len(subject.points), weights.shape[1]))
+    at_welded = np.zeros((len(subject.mesh.points), weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
     # Without a path, or with sources outside the body, distances are no evidence.
@@ -167,7 +167,7 @@ def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.flo
     is_near |= _attached(subject, at_welded)[welded]
     anchored = np.zeros(at_welded.shape, bool)
     np.logical_or.at(anchored, welded, is_near)
-    connected = connected_weights(at_welded, anchored, subject.edges.edges)
+    connected = connected_weights(at_welded, anchored, subject.mesh.edges.edges)
     remaining = np.where(is_near, weights, np.minimum(weights, connected[welded]))
     ends = ~is_near & (remaining < TAIL * weights.max(axis=1, keepdims=True))
     remaining[ends] = 0.0
@@ -176,7 +176,7 @@ def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.flo
 
 def _attached(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return which joints have most weight of each welded vertex's component, shape (k, j)."""
-    component = subject.component
+    component = subject.mesh.component
     sums = np.zeros((int(component.max()) + 1, weights.shape[1]))
     np.add.at(sums, component, weights)
     total = sums.sum(axis=1, keepdims=True)

@@ -25,7 +25,7 @@ MAX_ENTRIES = 40
 
 def find_intersections(subject: Subject) -> Iterator[Finding]:
     """Look for faces that pass through others."""
-    is_crossed, is_whole = intersecting_faces(subject.points, subject.faces)
+    is_crossed, is_whole = intersecting_faces(subject.mesh.points, subject.faces)
     crossed = subject.whole[is_crossed]
     least, part = "" if is_whole else "At least ", subject.area_share(crossed)
     yield from found("self-intersections", faces=crossed, least=least, part=part)

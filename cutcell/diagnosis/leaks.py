@@ -83,8 +83,8 @@ def _stray_advice(weights: NDArray[np.float64]) -> str:
 
 def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     distances = subject.distances
-    edges = np.ascontiguousarray(subject.edges.edges.T, np.intp)
-    at_welded, area = np.ascontiguousarray(weights[subject.first].T), subject.place_areas
+    edges = np.ascontiguousarray(subject.mesh.edges.edges.T, np.intp)
+    at_welded, area = np.ascontiguousarray(weights[subject.mesh.first].T), subject.mesh.areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     has_bone = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
     least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
@@ -96,14 +96,14 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         label = label_components(between.T, len(influenced))
         total = np.bincount(label, (at_welded[j] * area)[influenced])
         # An island is away from a larger region of the same joint on the same component.
-        of = subject.component[influenced]
+        of = subject.mesh.component[influenced]
         largest = np.zeros(of.max() + 1)
         np.maximum.at(largest, of, total[label])
         is_island = total[label] < largest[of]
         islands, label = influenced[is_island], label[is_island]
         if not len(islands):
             continue
-        through = through_body(subject, subject.first[islands], np.full(len(islands), j))
+        through = through_body(subject, subject.mesh.first[islands], np.full(len(islands), j))
         beyond = through - least[islands]
         nearest = np.full(len(total), np.inf)
         np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))

@@ -64,10 +64,10 @@ def _stray(subject: Subject) -> Iterator[Finding]:
 
 def _cracks(subject: Subject) -> Iterator[Finding]:
     """Look for rims that fit together once they are drawn over a narrow gap."""
-    loop, following = subject.boundary.loop, subject.boundary.following
+    loop, following = subject.mesh.boundary.loop, subject.mesh.boundary.following
     if len(loop) < MIN_CRACK_EDGES:
         return
-    points = subject.points
+    points = subject.mesh.points
     length = float(np.median(np.linalg.norm(points[loop] - points[following], axis=1)))
     wide = min(MAX_WIDTH, MAX_EDGE_PART * length)
     if wide <= WELD_TOLERANCE:
@@ -99,7 +99,7 @@ def _rim_normals(
     subject: Subject, start: NDArray[np.int64], end: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Return the unit normals of the faces that sides of rims belong to."""
-    faces, points = subject.graph.faces[subject.whole], subject.points
+    faces, points = subject.faces, subject.mesh.points
     sides = faces.astype(np.int64) * len(points) + np.roll(faces, -1, axis=1)
     order = np.argsort(sides, axis=None, kind="stable")
     keys = start * len(points) + end
@@ -108,7 +108,7 @@ def _rim_normals(
 
 
 def _open(subject: Subject) -> Iterator[Finding]:
-    loop, start = subject.boundary
+    loop, start = subject.mesh.boundary
     if not len(loop):
         return
     # The rim of faces that lie on copies is repeated.
@@ -130,16 +130,16 @@ def _open(subject: Subject) -> Iterator[Finding]:
 
 
 def _non_manifold(subject: Subject) -> Iterator[Finding]:
-    sides = face_edges(subject.faces)
-    key = sides[:, 0].astype(np.int64) * len(subject.points) + sides[:, 1]
-    _, which, uses = np.unique(key, return_inverse=True, return_counts=True)
-    is_at_edge = (uses[which.ravel()] > 2).reshape(-1, 3).any(axis=1)
-    yield from found("non-manifold-edges", faces=subject.whole[is_at_edge], edges=(uses > 2).sum())
+    edges, code = subject.mesh.edges, [len(subject.mesh.points), 1]  # one number for each edge
+    tangled = edges.edges[edges.uses > 2]
+    is_tangled = np.isin(face_edges(subject.faces) @ code, tangled @ code)
+    faces = subject.whole[is_tangled.reshape(-1, 3).any(axis=1)]
+    yield from found("non-manifold-edges", faces=faces, edges=len(tangled))
 
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
     # The two sides of a face are no duplicates.
-    faces = _rolled(subject.graph.faces[subject.whole])
+    faces = _rolled(subject.faces)
     copies = np.delete(subject.whole, np.unique(faces, axis=0, return_index=True)[1])
     yield from found("duplicate-faces", faces=copies)
 
@@ -151,9 +151,10 @@ def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 def _degenerate(subject: Subject) -> Iterator[Finding]:
-    corners = subject.points[subject.welded[subject.rig.mesh.faces]]
+    mesh = subject.rig.mesh.welded
+    corners = mesh.points[mesh.faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    flat = subject.is_collapsed | (subject.areas <= FLAT * longest**2)
+    flat = ~subject.mesh.is_whole | (mesh.face_areas <= FLAT * longest**2)
     degenerate = np.flatnonzero(flat & (subject.graph.omitted == 0))
     if len(degenerate) < len(subject.areas):
         yield from found("degenerate-faces", faces=degenerate)

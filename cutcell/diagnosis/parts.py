@@ -9,14 +9,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
-from ..geometry.laplacian import vertex_areas, vertex_normals
-from ..graph import INTERIOR
-from ..graph.winding import winding_number
-from ..rig import TriangleMesh
+from ..graph import INTERIOR, CutCellGraph
 from ..rig.deform_joints.conventions import kinds_by_name
 from ..rig.names import words
 from ..runtime.display import count, share
-from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
+from ..weights.rig_falloff.components import SMALL, bone_containment
 from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
 from .finding import Finding, found
 from .subject import Subject, bones_distance
@@ -56,20 +53,19 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
 
 
 def _thin(subject: Subject) -> Iterator[Finding]:
-    graph, points = subject.graph, subject.points
+    graph, mesh = subject.graph, subject.mesh
     resolution = graph.lattice.resolution
-    faces = graph.faces[subject.whole]
     inside = graph.nodes[graph.node_kind == INTERIOR]
-    used = np.zeros(len(points), bool)
-    used[faces] = True
-    far = used & (cKDTree(inside).query(points)[0] * resolution > FAR)
+    used = np.zeros(len(mesh.points), bool)
+    used[subject.faces] = True
+    far = used & (cKDTree(inside).query(mesh.points)[0] * resolution > FAR)
     if not far.any():
         return
-    areas = vertex_areas(points, faces)
-    depth = _depths(points, faces, np.flatnonzero(far), resolution)
-    thin = np.zeros(len(points), bool)
+    areas = mesh.areas
+    depth = _depths(graph, np.flatnonzero(far))
+    thin = np.zeros(len(mesh.points), bool)
     thin[np.flatnonzero(far)[depth > 0]] = True
-    start, end = subject.edges.edges.T
+    start, end = subject.mesh.edges.edges.T
     neighbours = np.union1d(start[thin[end]], end[thin[start]])  # at sharp rims nothing is below
     thin[neighbours] |= far[neighbours]
     part, total = areas[thin].sum(), areas.sum()
@@ -88,19 +84,17 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     )
 
 
-def _depths(
-    points: NDArray[np.float64], faces: NDArray[np.int32], places: NDArray[np.intp], resolution: int
-) -> NDArray[np.float64]:
+def _depths(graph: CutCellGraph, places: NDArray[np.intp]) -> NDArray[np.float64]:
     """Measure how thick the body is below vertices, in cells; 0 where nothing is inside.
 
     Large sets are sampled; other vertices take the value of the nearest sample.
     """
     step = -(-len(places) // SAMPLES)
     chosen = places[::step]
-    normals = vertex_normals(points, faces)[chosen]
-    below = points[chosen, None] - DEPTHS[:, None] / resolution * normals[:, None]
-    body = TriangleMesh(points, faces)
-    inside = winding_number(body, below.reshape(-1, 3)).reshape(len(chosen), -1) >= 0.5
+    points, normals = graph.mesh.points, graph.mesh.normals[chosen]
+    below = points[chosen, None] - DEPTHS[:, None] / graph.lattice.resolution * normals[:, None]
+    numbers = graph.winding_numbers.at(below.reshape(-1, 3))
+    inside = numbers.reshape(len(chosen), -1) >= 0.5
     deep = np.cumprod(inside, axis=1).sum(axis=1)
     depth = np.concatenate([[0], DEPTHS])[deep]
     return depth if step == 1 else depth[cKDTree(points[chosen]).query(points[places])[1]]
@@ -108,8 +102,8 @@ def _depths(
 
 def _unreachable(subject: Subject) -> Iterator[Finding]:
     lost = np.flatnonzero((subject.distances.fallback == UNREACHED) & subject.is_used)
-    pieces = np.unique(subject.component[subject.welded[lost]])
-    is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
+    pieces = np.unique(subject.mesh.component[subject.welded[lost]])
+    is_large = (subject.mesh.longest_sides[pieces] > SMALL).any()
     follows = "small components follow what they sit on"
     if is_large:
         follows = "they follow their nearest bones in a straight line"
@@ -133,15 +127,14 @@ def _unreachable(subject: Subject) -> Iterator[Finding]:
 
 
 def _loose(subject: Subject) -> Iterator[Finding]:
-    used = np.unique(subject.component[subject.welded[subject.is_used]])
+    used = np.unique(subject.mesh.component[subject.welded[subject.is_used]])
     if len(used) < 2:
         return
-    faces, bones = subject.graph.faces[subject.whole], subject.distances.bones
-    containment = bone_containment(subject.points, faces, subject.component, bones)
+    containment = bone_containment(subject.mesh, subject.distances.bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
     yield from found(
         "boneless-components",
-        vertices=subject.vertices_at(np.isin(subject.component, loose)),
+        vertices=subject.vertices_at(np.isin(subject.mesh.component, loose)),
         details=_lines(subject, loose),
         loose=len(loose),
         total=len(used),
@@ -151,8 +144,8 @@ def _loose(subject: Subject) -> Iterator[Finding]:
 
 def _lines(subject: Subject, pieces: NDArray[np.integer]) -> list[str]:
     """Describe components, the largest first: vertex count, and the joint that they follow."""
-    piece = np.where(subject.is_used, subject.component[subject.welded], -1)
-    sizes = np.bincount(piece[piece >= 0], minlength=int(subject.component.max()) + 1)
+    piece = np.where(subject.is_used, subject.mesh.component[subject.welded], -1)
+    sizes = np.bincount(piece[piece >= 0], minlength=len(subject.mesh.longest_sides))
     return [
         f"{count(int(sizes[p]), 'vertex', 'follow')} "
         f"{subject.name(_holder(subject, np.flatnonzero(piece == p)))}"
@@ -174,10 +167,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     One that follows the same joint as the body that it touches is sound, however far its bones are.
     """
     weights = subject.weights
-    label = subject.component[subject.welded]
-    sizes = np.bincount(label)
-    number = np.argsort(np.argsort(-sizes, kind="stable"))  # the largest part is the first
-    component = np.where(subject.is_used, number[label], -1)
+    component = np.where(subject.is_used, subject.mesh.component[subject.welded], -1)
     joint = np.where(weights.max(axis=1) > RIGID, weights.argmax(axis=1), -1)
     order = np.argsort(component, kind="stable")
     parts = np.split(order, np.flatnonzero(np.diff(component[order])) + 1)
@@ -207,7 +197,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
 
 def _much_nearer(subject: Subject, part: NDArray[np.intp], joint: int) -> int:
     """Return the joint nearest to a part, if it is much nearer than the one that it follows."""
-    bones, points = subject.distances.bones, subject.points[subject.welded[part]]
+    bones, points = subject.distances.bones, subject.mesh.points[subject.welded[part]]
     allowed = subject.rig.allowed
     nearest, least, followed = -1, np.inf, np.full(len(points), np.inf)
     if not (bones.joint == joint).any():
@@ -248,14 +238,14 @@ def _moves_with_the_body(
     joint: int,
 ) -> bool:
     """Return whether the body that a part touches follows the joint of the part."""
-    on_body = np.zeros(len(subject.points), bool)
+    on_body = np.zeros(len(subject.mesh.points), bool)
     on_body[subject.welded[subject.is_used]] = True
     for other, _, _ in far:  # several may be wrong together
         on_body[subject.welded[other]] = False
     if not on_body.any():
         return False
-    points = subject.points[subject.welded[part]]
+    points = subject.mesh.points[subject.welded[part]]
     distance, mean = nearest_on_body(subject.graph, on_body, points)
     touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
-    of_joint = subject.weights[subject.first, joint]
+    of_joint = subject.weights[subject.mesh.first, joint]
     return float((mean[touching] @ of_joint).mean()) > SHARED

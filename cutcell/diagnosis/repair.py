@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.weld import weld
-from ..graph.lattice import Lattice
 from ..io.gltf.write.faces import with_faces, with_rescaled
 from ..rig import Rig
 from ..rig.rig import normalised
@@ -125,8 +123,7 @@ def _filled(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
 def _together(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
     """Give vertices in one place the mean of their weights."""
     most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
-    _, place = weld(Lattice.around(rig.mesh, 2).to_unit(rig.mesh.vertices))
-    places, which = np.unique(place[vertices], return_inverse=True)
+    places, which = np.unique(rig.mesh.welded.index[vertices], return_inverse=True)
     sums = np.zeros((len(places), weights.shape[1]))
     np.add.at(sums, which, weights[vertices])
     weights[vertices] = (sums / np.bincount(which)[:, None])[which]

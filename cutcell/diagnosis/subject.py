@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from ..geodesics import BoneDistances, bone_distances
 from ..geodesics.bones import Bones
-from ..geometry.edges import MeshEdges, find_edges
 from ..geometry.segments import distance_to_segment
-from ..geometry.triangles import areas, label_components
+from ..geometry.welded import WeldedMesh
 from ..graph import CutCellGraph, build_graph
 from ..graph.orientation.orient import flipped
 from ..graph.surface import WALL
-from ..graph.winding.boundary import Boundary, boundary_of
 from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import Body
@@ -82,15 +80,10 @@ class Subject:
         """The welded vertex of each vertex of the file, shape (n,)."""
         return self.graph.vertex_node
 
-    @cached_property
-    def first(self) -> NDArray[np.intp]:
-        """The first vertex of the file at each welded vertex, shape (k,)."""
-        return np.unique(self.welded, return_index=True)[1]
-
-    @cached_property
-    def points(self) -> NDArray[np.float64]:
-        """Welded vertices in the unit cube, shape (k, 3)."""
-        return self.graph.nodes[: self.graph.first_point]
+    @property
+    def mesh(self) -> WeldedMesh:
+        """The graph's mesh, whose faces look outward."""
+        return self.graph.mesh
 
     @cached_property
     def is_used(self) -> NDArray[np.bool_]:
@@ -100,53 +93,24 @@ class Subject:
         return used
 
     @cached_property
-    def is_collapsed(self) -> NDArray[np.bool_]:
-        """Which faces have a repeated corner in the graph, shape (m,)."""
-        a, b, c = self.graph.faces.T
-        return np.asarray((a == b) | (b == c) | (c == a))
-
-    @cached_property
     def whole(self) -> NDArray[np.intp]:
         """The faces that have not collapsed."""
-        return np.flatnonzero(~self.is_collapsed)
+        return np.flatnonzero(self.mesh.is_whole)
 
     @cached_property
     def faces(self) -> NDArray[np.int32]:
-        """`whole` with welded vertices and the orientation of the file, shape (w, 3)."""
-        return self.welded[self.rig.mesh.faces[self.whole]]
+        """The corners of `whole`, which look outward, shape (w, 3)."""
+        return self.mesh.faces[self.whole]
 
-    @cached_property
-    def edges(self) -> MeshEdges:
-        """The edges of `faces` once they all face outward."""
-        return find_edges(self.graph.faces[self.whole])
-
-    @cached_property
-    def boundary(self) -> Boundary:
-        """Loops of edges that the faces leave open."""
-        return boundary_of(self.edges.edges, self.edges.incidence)
-
-    @cached_property
+    @property
     def areas(self) -> NDArray[np.float64]:
         """The area of each face of the file in the unit cube, shape (m,)."""
-        return areas(self.points[self.welded[self.rig.mesh.faces]])
-
-    @cached_property
-    def place_areas(self) -> NDArray[np.float64]:
-        """A third of the areas of the faces around each welded vertex, shape (k,)."""
-        corners = self.welded[self.rig.mesh.faces].ravel()
-        thirds = np.repeat(self.areas / 3, 3)
-        return np.bincount(corners, thirds, len(self.points)).astype(np.float64)
+        return self.rig.mesh.welded.face_areas
 
     @property
     def vertex_areas(self) -> NDArray[np.float64]:
-        """`place_areas` divided among the vertices of the file at each place, shape (n,)."""
-        shared = np.bincount(self.welded, minlength=len(self.points))
-        return np.asarray((self.place_areas / shared)[self.welded])
-
-    @cached_property
-    def component(self) -> NDArray[np.int32]:
-        """The connected component of each welded vertex, shape (k,)."""
-        return label_components(self.graph.faces, len(self.points))
+        """The areas around welded vertices divided among the vertices of the file, shape (n,)."""
+        return np.asarray((self.mesh.areas / np.bincount(self.welded))[self.welded])
 
     @cached_property
     def body(self) -> Body:
@@ -170,7 +134,7 @@ class Subject:
 
     def vertices_at(self, places: NDArray) -> NDArray[np.intp]:
         """Return the vertices of the file at some welded vertices: their numbers, or a mask."""
-        at = np.zeros(len(self.points), bool)
+        at = np.zeros(len(self.mesh.points), bool)
         at[places] = True
         return np.flatnonzero(at[self.welded] & self.is_used)
 

@@ -40,7 +40,7 @@ ALL = 1 - 1e-9
 def check_sweep(subject: Subject) -> Iterator[Finding]:
     """Turn one joint after the other and look for edges, faces and volumes that it ruins."""
     # By how much each welded vertex follows each joint, (j, k).
-    follows = followed(normalised(subject.weights[subject.first]), subject.rig.skeleton)
+    follows = followed(normalised(subject.weights[subject.mesh.first]), subject.rig.skeleton)
     yield from _stretched_surface(subject)
     yield from _torn(subject, follows)
     poses = list(_poses(subject, follows))
@@ -62,16 +62,15 @@ def _turns() -> list[tuple[str, float, NDArray[np.float64]]]:
 
 def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[tuple[_Fault, _Fault]]:
     """Yield the faces that flip, of those that are whole, and the volume that is lost, per pose."""
-    points, faces = subject.points, subject.faces
+    points, faces = subject.mesh.points, subject.faces
     joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
     corners_of = np.ascontiguousarray(faces.T, np.intp)
     at_first = normals(points[faces])
     area = np.linalg.norm(at_first, axis=1).sum()
-    is_open = np.zeros(subject.component.max() + 1, bool)
-    is_open[subject.component[subject.boundary.loop]] = True
+    is_open = np.zeros(subject.mesh.component.max() + 1, bool)
+    is_open[subject.mesh.component[subject.mesh.boundary.loop]] = True
     # Faces of open components enclose nothing, inverted ones count as flipped.
-    sign = np.where(subject.graph.inverted[subject.whole], -1.0, 1.0)
-    sign[is_open[subject.component[faces[:, 0]]]] = 0.0
+    sign = np.where(is_open[subject.mesh.component[faces[:, 0]]], 0.0, 1.0)
     volume = np.einsum("i,ij,ij->", sign, points[faces[:, 0]], at_first)
     number = np.zeros(len(points), np.intp)
     turns = _turns()
@@ -128,11 +127,12 @@ def _torn(subject: Subject, follows: NDArray[np.float64]) -> Iterator[Finding]:
 
 def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Fault]:
     """Yield the welded ends of edges that become much longer, per pose."""
-    edges, turns = subject.edges.edges, _turns()
+    edges, turns = subject.mesh.edges.edges, _turns()
     joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
     rotations = [turn for _, _, turn in turns]
     turned = np.arange(len(joints))
-    for block in turned_edges(subject.points, edges, follows, joints, turned, rotations, STRETCH):
+    points = subject.mesh.points
+    for block in turned_edges(points, edges, follows, joints, turned, rotations, STRETCH):
         longer = block.after - block.before
         is_torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * block.before)
         for t, (axis, degrees, _) in enumerate(turns):

@@ -55,7 +55,7 @@ def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
 
 def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     place = subject.welded
-    first = subject.first[place]
+    first = subject.mesh.first[place]
     copies = np.flatnonzero((first != np.arange(len(first))) & subject.is_used)
     differs = np.abs(weights[copies] - weights[first[copies]]).sum(axis=1) > DIFFERENT
     torn = np.unique(place[copies[differs]])
@@ -71,7 +71,7 @@ def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]
     is_reached = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[is_reached], joint[is_reached]
     through = through_body(subject, vertex, joint)
-    points, straight = subject.points[subject.welded[vertex]], np.empty(len(vertex))
+    points, straight = subject.mesh.points[subject.welded[vertex]], np.empty(len(vertex))
     for j in np.unique(joint):
         straight[joint == j] = bones_distance(distances.bones, j, points[joint == j])
     beyond = through - distances.least[vertex]

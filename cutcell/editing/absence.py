@@ -43,7 +43,7 @@ def factors_of(context: Context, vertex: int, joint: int) -> dict[str, float]:
     if context.method.falloff == "paper":
         return of_gain
     division, node = context.division, context.graph.vertex_node[vertex]
-    surface = division.surface
+    surface = context.graph.mesh
     radius = 1.0
     if division.beyond[node]:  # elsewhere nothing is beyond any radius
         radius = float(context.distances.at_welded[joint, node] / division.radius[joint])

@@ -146,7 +146,7 @@ def bind_steps(
         def computed(layer: Layer) -> NDArray[np.float64]:
             return layer_context(rig, context, edits.reach, layer).weights
 
-        sources = RigSources(rig, method, context.graph, context.operators, computed)
+        sources = RigSources(rig, method, context.graph, computed)
         return apply_layers(context.weights, layers, sources, after)
 
     steps = computed_steps(rig, method, edits.reach, graph, distances)

@@ -81,7 +81,7 @@ class _IncrementalFalloff:
         """Return the weights (k, j) of welded vertices for changed distances."""
         before, diffusion = self._context.division, self._context.diffusion
         weights = self._spread.copy()
-        division = Division.by(distances, before.surface, self._context.adjustments, before)
+        division = Division.by(distances, self._context.adjustments, before)
         change = np.abs(division.weights - before.weights).max(axis=0)
         changed = np.flatnonzero(change > UNSEEN)
         weights[:, changed] = 0

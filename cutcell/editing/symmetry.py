@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from ..errors import MeshError, SkeletonError
-from ..geometry.weld import WELD_TOLERANCE, weld
+from ..geometry.welded import WeldedMesh
 from ..rig import Rig, Skeleton
 from ..rig.names import plain
 
@@ -48,7 +48,8 @@ def find_mirror(rig: Rig) -> Mirror:
     used[rig.mesh.faces] = True
     best, share = None, 0.0
     # Welded vertices: copies of a vertex at a seam must all get the same partner.
-    points, welded = weld(rig.mesh.vertices, WELD_TOLERANCE * mesh_diagonal(rig))
+    welded = rig.mesh.welded
+    points = rig.mesh.cube.to_file(welded.points)
     tree, within = cKDTree(points), VERTEX_TOLERANCE * mesh_diagonal(rig)
     for axis, position, joint in mirror_planes(rig):
         if (joint >= 0).mean() <= share:
@@ -164,16 +165,15 @@ def reflected(points: NDArray[np.float64], axis: int, position: float) -> NDArra
     return result
 
 
-def _vertex_partners(near: NDArray[np.intp], welded: NDArray[np.int32]) -> NDArray[np.intp]:
+def _vertex_partners(near: NDArray[np.intp], mesh: WeldedMesh) -> NDArray[np.intp]:
     """Pair vertices whose mirror images are nearest to each other.
 
-    Shapes: near (k,), the place nearest to each one's image, k for none; welded (n,).
+    Shapes: near (k,), the welded vertex nearest to each one's image, k for none.
     """
     every = np.arange(len(near))
     back = np.append(near, len(near))[near]
-    first = np.unique(welded, return_index=True)[1]
-    partner = np.where(back == every, np.append(first, -1)[near], -1)[welded]
-    return np.where((near == every)[welded], np.arange(len(welded)), partner)
+    partner = np.where(back == every, np.append(mesh.first, -1)[near], -1)[mesh.index]
+    return np.where((near == every)[mesh.index], np.arange(len(mesh.index)), partner)
 
 
 def _partners_there(

@@ -7,26 +7,22 @@ from numpy.typing import NDArray
 
 from .edges import NONE
 from .triangles import label_components, normals
+from .welded import WeldedMesh
 
 STEPS = 1 << 20
 """Of a full turn about an edge: faces within the same step lie on each other."""
 
 
 def separate_closed_parts(
-    vertices: NDArray[np.float64],
-    index: NDArray[np.int32],
-    faces: NDArray[np.int32],
-    partner: NDArray[np.int32],
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    mesh: WeldedMesh, faces: NDArray[np.int32]
+) -> tuple[WeldedMesh, NDArray[np.int32]]:
     """Split welded vertices at which closed parts touch; open parts stay welded to all they touch.
 
-    Shapes: vertices (k, 3), welded; index (n,) and faces (m, 3) of the file's vertices; partner
-    (3 m,), see `find_edges`. Returns vertices (k', 3) and index (n,) once split, and the closed
-    part of each face, (m,), or NONE.
+    Shapes: faces (m, 3), those of the mesh between the file's vertices. Returns the mesh once split
+    and the closed part of each face, (m,), or NONE.
     """
-    corners = index[faces]
-    is_whole = np.repeat((corners != np.roll(corners, 1, axis=1)).all(axis=1), 3)
-    partner = _pair_around_edges(vertices, corners, partner, is_whole)
+    vertices, index, is_whole = mesh.points, mesh.index, np.repeat(mesh.is_whole, 3)
+    partner = _pair_around_edges(vertices, mesh.faces, mesh.edges.partner, is_whole)
     start, end, is_paired = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), partner != NONE
     n, k, used = len(index), len(vertices), np.unique(start[is_whole])
     seam = np.flatnonzero(is_paired & (start != end[partner]))
@@ -45,7 +41,7 @@ def separate_closed_parts(
     place, group, group_at = index[used], group[part[used]], np.empty(k, np.int32)
     group_at[place] = group
     if (group_at[place] == group).all():
-        return vertices, index, closed
+        return mesh, closed
     low, high = np.full(n + k, k), np.full(n + k, NONE)
     np.minimum.at(low, group, place)
     np.maximum.at(high, group, place)
@@ -54,7 +50,8 @@ def separate_closed_parts(
     key = index.astype(np.int64) * (n + k)
     key[used] += rank[group]
     keys = np.unique(np.append(key[used], key[np.isin(index, place, invert=True)]))
-    return vertices[keys // (n + k)], np.searchsorted(keys, key).astype(np.int32), closed
+    index = np.searchsorted(keys, key).astype(np.int32)
+    return WeldedMesh(vertices[keys // (n + k)], index, index[faces]), closed
 
 
 def _pair_around_edges(

@@ -22,6 +22,9 @@ class MeshEdges(NamedTuple):
     incidence : array, shape (e,), int32
         Signed edge incidence: how often faces traverse the edge from the lower to the higher
         vertex, less how often from the higher to the lower. Zero wherever the mesh is closed.
+    uses : array, shape (e,), int32
+        How many faces without a repeated corner share the edge: one at a rim, two at a manifold
+        edge.
     partner : array, shape (3 m,), int32
         Half-edge k of face f runs from its corner k to the next and has the index 3 f + k.
         Its partner is the other half-edge on the same edge if exactly two faces share the edge
@@ -30,6 +33,7 @@ class MeshEdges(NamedTuple):
 
     edges: NDArray[np.int32]
     incidence: NDArray[np.int32]
+    uses: NDArray[np.int32]
     partner: NDArray[np.int32]
 
 
@@ -68,7 +72,8 @@ def _find_edges(faces, vertices):
         copy_to(once[s], twice[by_low[low]])
         by_low[low] += 1
 
-    edges, incidence = np.empty((half_edges, 2), np.int32), np.empty(half_edges, np.int32)
+    edges = np.empty((half_edges, 2), np.int32)
+    incidence, uses = np.empty(half_edges, np.int32), np.empty(half_edges, np.int32)
     partner = np.full(3 * len(faces), NONE, np.int32)
     count, first = 0, 0
     for s in range(half_edges):
@@ -76,12 +81,19 @@ def _find_edges(faces, vertices):
         if count == 0 or edges[count - 1, 0] != a or edges[count - 1, 1] != b:
             if s - first == 2:
                 _pair(twice[first, 2], twice[first + 1, 2], partner)
-            edges[count, 0], edges[count, 1], incidence[count] = a, b, 0
+            edges[count, 0], edges[count, 1] = a, b
+            incidence[count], uses[count] = 0, 0
             count, first = count + 1, s
         incidence[count - 1] += 1 if half_edge >= 0 else -1
+        uses[count - 1] += _is_whole(faces[max(half_edge, ~half_edge) // 3])
     if half_edges - first == 2:
         _pair(twice[first, 2], twice[first + 1, 2], partner)
-    return edges[:count].copy(), incidence[:count].copy(), partner
+    return edges[:count].copy(), incidence[:count].copy(), uses[:count].copy(), partner
+
+
+@compiled(inline="always")
+def _is_whole(face):
+    return face[0] != face[1] and face[1] != face[2] and face[2] != face[0]
 
 
 @compiled(inline="always")

@@ -27,7 +27,8 @@ def assemble(
     winding_threshold: float,
 ) -> CutCellGraph:
     """Build the graph of a surface from the hits of the rays and their intervals inside."""
-    resolution, vertices, mesh_edges = surface.resolution, surface.vertices, surface.edges
+    resolution, mesh = surface.resolution, surface.mesh
+    vertices, mesh_edges = mesh.points, mesh.edges.edges
     points = interior_points(inside, resolution)
     first_surface = len(vertices) + len(points)
     numbers, starts = [], []
@@ -54,14 +55,14 @@ def assemble(
 
     def fill_surface(axis: int) -> None:
         along = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
-        mesh = vertices, surface.faces
-        first = first_surface, edge
-        _fill_surface(resolution, AXES[axis], along, mesh, first, nodes, triangle, edges, lengths)
+        triangles, first = (vertices, mesh.faces), (first_surface, edge)
+        ends = nodes, triangle, edges, lengths
+        _fill_surface(resolution, AXES[axis], along, triangles, first, *ends)
 
     def fill_rest(_: int) -> None:
         first_inside = len(mesh_edges)
         nodes[: len(vertices)], edges[:first_inside] = vertices, mesh_edges
-        lengths[:first_inside] = np.linalg.norm(np.subtract(*vertices[mesh_edges.T]), axis=1)
+        lengths[:first_inside] = mesh.edge_lengths
         points.put_positions(nodes[len(vertices) : first_surface])
 
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
@@ -80,10 +81,8 @@ def assemble(
         lengths=lengths,
         edge_kind=_kinds(edge_kinds),
         triangle=triangle,
-        vertex_node=surface.vertex_node,
-        faces=surface.faces,
+        mesh=mesh,
         lattice=surface.lattice,
-        is_closed=surface.is_closed,
         connectivity=connectivity,
         interior=points,
         inverted=surface.inverted,

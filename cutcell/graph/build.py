@@ -87,7 +87,7 @@ def build_graph(
         fill = method.connectivity != 6  # the paper's graph leaves voids empty
         surface = prepare_surface(mesh, resolution, method.orient, fill, share_of(report, 0, 0.05))
         check_hits(surface)
-        shape = surface.vertices, surface.faces, resolution
+        shape = surface.mesh.points, surface.mesh.faces, resolution
         if rays == "raster":
             hits = cast_all_rays(*shape, share_of(report, 0.05, 0.2))
         else:
@@ -99,7 +99,7 @@ def build_graph(
                 surface, hits, tau, share_of(report, 0.2, 0.45)
             )
         else:
-            fast = partial(fast_winding_numbers, surface.vertices, surface.faces)
+            fast = partial(fast_winding_numbers, surface.mesh.points, surface.mesh.faces)
             numbers = PointwiseWindingNumbers(surface, fast)
         # Hits and lattice points divide the rays into segments. Those whose midpoint has a winding
         # number of at least tau are kept.

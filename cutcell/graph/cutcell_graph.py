@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.welded import WeldedMesh
 from ..runtime.repr import Summarized
 from .fingerprint import Fingerprint
 from .interior import InteriorPoints
@@ -42,14 +43,10 @@ class CutCellGraph(Summarized):
         MESH, INTERIOR or SURFACE.
     triangle : array, shape (N,), int32
         The face that a surface node lies on; -1 for other nodes.
-    vertex_node : array, shape (n,), int32
-        The node of each vertex of the mesh as given: its welded vertex.
-    faces : array, shape (m, 3), int32
-        The mesh's triangles between nodes, flipped to face outward where inverted. Triangles that
-        welding has collapsed are included, and those left out, collapsed, too.
+    mesh : WeldedMesh
+        Its points are the first nodes. Faces are flipped to face outward where inverted; those left
+        out have collapsed.
     lattice : Lattice
-    is_closed : bool
-        Whether the faces have no boundary.
     connectivity : {6, 26, "any"}
         See `build_graph`.
     interior : InteriorPoints
@@ -74,10 +71,8 @@ class CutCellGraph(Summarized):
     lengths: NDArray[np.float64]
     edge_kind: NDArray[np.uint8]
     triangle: NDArray[np.int32]
-    vertex_node: NDArray[np.int32]
-    faces: NDArray[np.int32]
+    mesh: WeldedMesh
     lattice: Lattice
-    is_closed: bool
     connectivity: int | str
     interior: InteriorPoints
     inverted: NDArray[np.bool_]
@@ -99,9 +94,24 @@ class CutCellGraph(Summarized):
         }
 
     @property
+    def vertex_node(self) -> NDArray[np.int32]:
+        """The node of each vertex of the mesh as given, shape (n,): its welded vertex."""
+        return self.mesh.index
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """The faces of `mesh`, shape (m, 3)."""
+        return self.mesh.faces
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the faces have no boundary."""
+        return self.mesh.is_closed
+
+    @property
     def first_point(self) -> int:
         """The node of the first lattice point."""
-        return int(self.vertex_node.max()) + 1
+        return len(self.mesh.points)
 
     @property
     def first_surface(self) -> int:
@@ -121,7 +131,7 @@ class CutCellGraph(Summarized):
     @cached_property
     def winding_numbers(self) -> WindingNumbers:
         """Winding numbers of the graph's oriented mesh."""
-        return WindingNumbers(self.nodes[: self.first_point], self.faces)
+        return WindingNumbers(self.mesh)
 
     @cached_property
     def connected(self) -> NDArray[np.bool_]:

@@ -25,7 +25,7 @@ BYTES_PER_HIT = 80
 
 def check_hits(surface: Surface) -> None:
     """Refuse rays whose hits would take more memory than is free."""
-    hits = expected_hits(surface.vertices, surface.faces, surface.resolution)
+    hits = expected_hits(surface.mesh.points, surface.mesh.faces, surface.resolution)
     _require(lambda scale: BYTES_PER_HIT * hits * scale**2, surface.resolution)
 
 

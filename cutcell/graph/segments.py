@@ -114,7 +114,7 @@ class PointwiseWindingNumbers:
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """See `RayWindingNumbers`."""
         resolution = self.surface.resolution
-        ends = (resolution, NONE) if self.surface.is_closed else (0, resolution)
+        ends = (resolution, NONE) if self.surface.mesh.is_closed else (0, resolution)
         return np.tile(np.array(ends, np.int32), (resolution**2, 1))
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:

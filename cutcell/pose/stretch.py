@@ -100,8 +100,7 @@ def measure_stretch(
     is_mesh = graph.edge_kind == MESH
     edges, amount = _sampled(graph.edges[is_mesh], graph.lengths[is_mesh])
     nodes, local = _renumbered(edges, graph.first_point)
-    vertex = np.empty(graph.first_point, np.intp)
-    vertex[graph.vertex_node[::-1]] = np.arange(len(graph.vertex_node))[::-1]  # the first of each
+    vertex = graph.mesh.first
     shares = weights[vertex[nodes]]
     # Vertices without weight are another finding.
     is_weighted = np.asarray(shares.any(axis=1))[local].all(axis=1)

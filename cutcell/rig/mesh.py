@@ -10,11 +10,46 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
-from ..geometry.weld import WELD_TOLERANCE, weld
+from ..geometry.weld import weld
+from ..geometry.welded import WeldedMesh
 from ..runtime.repr import Summarized
-from .checks import as_array, assign, check_choice, check_finite, frozen
+from .checks import LARGEST, as_array, assign, check_choice, check_finite, check_positions, frozen
 
 COUNTS = ("welded", "vertices")
+
+
+@dataclass(frozen=True, eq=False)
+class UnitCube:
+    """The maps between a file's units and the unit cube that holds a mesh, centred.
+
+    Parameters
+    ----------
+    low : array, shape (3,)
+        Lowest corner of the mesh's bounding box, file units.
+    size : float
+        Longest side of the bounding box, file units: one side of the cube.
+    offset : array, shape (3,)
+        Position of `low` in the cube.
+    """
+
+    low: NDArray[np.float64]
+    size: float
+    offset: NDArray[np.float64]
+
+    @property
+    def diagonal(self) -> float:
+        """D, the diagonal of the mesh's bounding box in the cube's units."""
+        return float(np.linalg.norm(1 - 2 * self.offset))
+
+    def to_unit(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Bring points (..., 3) from the file's units into the unit cube."""
+        # Dividing, not multiplying by 1 / size, maps a mesh scaled by a power of two to the
+        # very same numbers.
+        return (np.asarray(points, np.float64) - self.low) / self.size + self.offset
+
+    def to_file(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Bring points (..., 3) from the unit cube back into the file's units."""
+        return (np.asarray(points, np.float64) - self.offset) * self.size + self.low
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,6 +105,37 @@ class TriangleMesh(Summarized):
         used = self.vertices[np.unique(self.faces)]
         return np.stack([used.min(axis=0), used.max(axis=0)])
 
+    @cached_property
+    def cube(self) -> UnitCube:
+        """The unit cube around the faces.
+
+        Raises
+        ------
+        MeshError
+            The mesh is too large or too small to compute with.
+        """
+        check_positions(self.vertices, "vertex", MeshError)
+        low, high = self.bounds
+        size = float((high - low).max())
+        if size * LARGEST < 1:
+            raise MeshError(
+                f"the mesh is only {size:.3g} long, too small to compute with (the limit is "
+                f"{1 / LARGEST:g}); scale the whole character up"
+            )
+        return UnitCube(low, size, (1 - (high - low) / size) / 2)
+
+    @cached_property
+    def welded(self) -> WeldedMesh:
+        """The mesh in the unit cube, with vertices at one place merged (`geometry.weld`).
+
+        Raises
+        ------
+        MeshError
+            The mesh is too large or too small to compute with.
+        """
+        points, index = weld(self.cube.to_unit(self.vertices))
+        return WeldedMesh(points, index, index[self.faces])
+
 
 def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float64]:
     """Return each vertex's share of a mean over the mesh.
@@ -100,7 +166,6 @@ def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float
     used = np.unique(mesh.faces)
     share[used] = 1.0
     if count == "welded":
-        low, high = mesh.bounds
-        welded = weld(mesh.vertices[used], WELD_TOLERANCE * float((high - low).max()))[1]
+        welded = mesh.welded.index[used]
         share[used] = 1.0 / np.bincount(welded)[welded]
     return share / share.sum()

@@ -17,7 +17,6 @@ from ..runtime.progress import Progress, silent
 from .adjustments import Adjustments
 from .rig_falloff.diffusion import Diffusion
 from .rig_falloff.division import Division
-from .rig_falloff.surface_operators import SurfaceOperators
 
 PENDING: Any = None
 """Value of results that no step has computed yet."""
@@ -38,8 +37,6 @@ class Context:
     graph : CutCellGraph
     distances : BoneDistances
     adjustments : Adjustments or None
-    surface : SurfaceOperators or None
-        Operators of the graph's mesh; computed when left out.
     division : Division
         The surface divided among the joints. The paper's falloff has none.
     diffusion : Diffusion
@@ -60,7 +57,6 @@ class Context:
     graph: CutCellGraph = PENDING
     distances: BoneDistances = PENDING
     adjustments: Adjustments | None = None
-    surface: SurfaceOperators | None = None
     division: Division = PENDING
     diffusion: Diffusion = PENDING
     weights: NDArray[np.float64] = PENDING
@@ -71,12 +67,6 @@ class Context:
     def report(self, done: float) -> None:
         """Report the fraction of the stage "weights" that is done."""
         self.progress("weights", done)
-
-    def operators(self) -> SurfaceOperators:
-        """Return the operators of the graph's mesh, computed once."""
-        if self.surface is None:
-            self.surface = SurfaceOperators.of(self.graph)
-        return self.surface
 
 
 class Step(NamedTuple):

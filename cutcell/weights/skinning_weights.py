@@ -19,7 +19,6 @@ from .context import Context, Step, run
 from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff.pipeline import RIG_STEPS
-from .rig_falloff.surface_operators import SurfaceOperators
 
 
 def skinning_weights(
@@ -28,7 +27,6 @@ def skinning_weights(
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
-    surface: SurfaceOperators | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -44,8 +42,6 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
         Arrays that `bind` makes of the gains and radii in `Computed`.
-    surface : SurfaceOperators, optional
-        Operators of the graph's mesh; computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
@@ -82,7 +78,7 @@ def skinning_weights(
     if allowed is not None:
         deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
         allowed = check_allowed(graph, deform, allowed)
-    context = Context(method, allowed, progress, graph, distances, adjustments, surface)
+    context = Context(method, allowed, progress, graph, distances, adjustments)
     return run(weight_steps(method, allowed), context).weights
 
 

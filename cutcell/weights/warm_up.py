@@ -19,7 +19,6 @@ import numpy as np
 
 from ..geodesics import bone_distances
 from ..graph import CutCellGraph, build_graph
-from ..graph.winding.boundary import find_boundary
 from ..graph.winding.treecode.caps import smallest_caps
 from ..graph.winding.treecode.cells import classify_cells
 from ..graph.winding.treecode.clusters import build_tree
@@ -70,7 +69,7 @@ def compile_from_other_end() -> None:
     """Compile the same in another order: winding numbers, and then what follows the graph."""
     with _without_garbage_collection():
         graph = block_graph()
-        caps = smallest_caps(graph.nodes[: graph.first_point], find_boundary(graph.faces))
+        caps = smallest_caps(graph.mesh.points, graph.mesh.boundary)
         classify_cells(build_tree(caps), 8, ANIMATION.winding_threshold)
         _compile_after(graph)
         _compile_after(block_graph(26))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.triangles import face_edges
+from ..geometry.welded import WeldedMesh
 from ..graph import INTERIOR, MESH, CutCellGraph, Lattice
 from ..graph.interior import InteriorPoints
 from ..rig import Skeleton, TriangleMesh
@@ -58,16 +58,16 @@ def block_graph(connectivity: int | str = "any") -> CutCellGraph:
     vertex has an edge to the lattice point that is nearest.
     """
     mesh = tube()
-    lattice = Lattice.around(mesh, SIDE)
+    lattice, first = Lattice.around(mesh, SIDE), len(mesh.vertices)
     vertices = lattice.to_unit(mesh.vertices)
-    first = len(vertices)
+    welded = WeldedMesh.of(vertices, mesh.faces.copy())
+    of_mesh = welded.edges.edges
     number = np.arange(SIDE**3, dtype=np.int32).reshape(SIDE, SIDE, SIDE)
     points = (np.stack(np.unravel_index(number.ravel(), number.shape), axis=1) + 0.5) / SIDE
     column = np.arange(SIDE * SIDE + 1)
     ends = np.zeros(SIDE * SIDE, np.int32)
     stretches = InteriorPoints(SIDE, column, ends, ends + SIDE - 1, column * SIDE)
 
-    of_mesh = np.unique(face_edges(mesh.faces), axis=0)
     around = np.pad(number, 1, constant_values=-1)
     up = [np.roll(around, -1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
     inside = [first + np.stack([number.ravel(), to], axis=1)[to >= 0] for to in up]
@@ -83,10 +83,8 @@ def block_graph(connectivity: int | str = "any") -> CutCellGraph:
         lengths=np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1),
         edge_kind=(np.arange(len(edges)) >= len(of_mesh)).astype(np.uint8),
         triangle=np.full(len(nodes), -1, np.int32),
-        vertex_node=np.arange(first, dtype=np.int32),
-        faces=mesh.faces.astype(np.int32),
+        mesh=welded,
         lattice=lattice,
-        is_closed=False,
         connectivity=connectivity,
         interior=stretches,
         inverted=np.zeros(len(mesh.faces), bool),

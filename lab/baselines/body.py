@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cutcell.geodesics import Bones, bone_segments
 from cutcell.geodesics.fallback import straight_to_nearest
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
-from cutcell.geometry.weld import weld
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.graph import Lattice
 from cutcell.method import Leaf
 from cutcell.rig import Rig
@@ -23,9 +23,7 @@ NEAREST = 3
 class Body:
     """A welded mesh and its bones, in the unit cube."""
 
-    points: NDArray[np.float64]  # (k, 3), welded vertices
-    faces: NDArray[np.int32]  # (m, 3), with three different corners each
-    index: NDArray[np.int32]  # (n,), the welded vertex of each vertex of the file
+    mesh: WeldedMesh  # no face of it has collapsed
     bones: Bones
     joints: int  # of the skeleton, with or without bones
     lattice: Lattice
@@ -33,13 +31,26 @@ class Body:
     @classmethod
     def of(cls, rig: Rig, leaf: Leaf = "point", resolution: int = 64) -> Body:
         """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`."""
-        lattice = Lattice.around(rig.mesh, resolution)
-        points, index = weld(lattice.to_unit(rig.mesh.vertices))
-        faces = index[rig.mesh.faces]
-        faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+        lattice, mesh = Lattice.around(rig.mesh, resolution), rig.mesh.welded
+        mesh = replace(mesh, faces=mesh.faces[mesh.is_whole])
         bones = bone_segments(rig.skeleton, leaf)
         bones = replace(bones, start=lattice.to_unit(bones.start), end=lattice.to_unit(bones.end))
-        return cls(points, faces, index, bones, len(rig.skeleton.joints), lattice)
+        return cls(mesh, bones, len(rig.skeleton.joints), lattice)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The welded vertices, shape (k, 3)."""
+        return self.mesh.points
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """The faces of `mesh`, shape (m, 3)."""
+        return self.mesh.faces
+
+    @property
+    def index(self) -> NDArray[np.int32]:
+        """The welded vertex of each vertex of the file, shape (n,)."""
+        return self.mesh.index
 
     def straight(self) -> NDArray[np.float64]:
         """Measure from every bone straight to every welded vertex, shape (b, k)."""

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
-from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
-from cutcell.geometry.triangles import label_components
+from cutcell.geometry.laplacian import cotangent_laplacian
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_number
@@ -123,21 +122,20 @@ def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
 
 def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return how near each bone is to each vertex, (b, k), and its closest point, (b, k, 3)."""
-    normals = vertex_normals(body.points, body.faces)
     nearness = np.empty((len(body.bones.joint), len(body.points)))
     closest = np.empty((*nearness.shape, 3))
     for b in range(len(closest)):
         closest[b] = body.closest_on(b)
         away = body.points - closest[b]
         length = np.linalg.norm(away, axis=1)
-        cosine = (away * normals).sum(axis=1) / np.where(length > 0, length, 1)
+        cosine = (away * body.mesh.normals).sum(axis=1) / np.where(length > 0, length, 1)
         nearness[b] = length / (0.5 * (cosine + FACING))
     return nearness, closest
 
 
 def _dark_components(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
     """List the vertices on components of the mesh without any warm vertex."""
-    component = label_components(body.faces, len(body.points))
+    component = body.mesh.component
     return np.flatnonzero(~(np.bincount(component, warm) > 0)[component])
 
 
@@ -145,7 +143,7 @@ def _equilibrium(
     body: Body, heat: NDArray[np.float64], share: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Solve for all joints at once: (L + M H) w = M H p."""
-    areas = vertex_areas(body.points, body.faces)
+    areas = body.mesh.areas
     # A vertex without area conducts nothing; any positive number lets it keep its own heat.
     warming = np.where(areas > 0, areas, 1e-12) * heat
     system = cotangent_laplacian(body.points, body.faces) + diags_array(warming)

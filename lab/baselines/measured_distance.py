@@ -18,7 +18,6 @@ from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_path
 from cutcell.geodesics.bones import per_joint
 from cutcell.geodesics.fallback import why_not_reached
-from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
 from cutcell.graph import CutCellGraph, build_graph
 from cutcell.method import Method
@@ -165,8 +164,7 @@ def _over_surface(body: Body) -> MeasuredDistance:
         nearest = tree.query(one + np.linspace(0, 1, steps)[:, None] * (other - one))[1]
         near.append(used[np.unique(nearest)])
         away.append(distance_to_segment(points[near[-1]], one, other))
-    edges = find_edges(body.faces).edges
-    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    edges, lengths = body.mesh.edges.edges, body.mesh.edge_lengths
     reached, before = _search(
         len(points), edges, lengths, np.concatenate(near), np.concatenate(away)
     )

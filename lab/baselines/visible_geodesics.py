@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from cutcell.geometry.edges import find_edges
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_number
@@ -150,6 +149,5 @@ def _farthest(
 
 
 def _along_edges(body: Body) -> csr_array:
-    one, other = find_edges(body.faces).edges.T
-    length = np.linalg.norm(body.points[one] - body.points[other], axis=1)
-    return coo_array((length, (one, other)), shape=(len(body.points),) * 2).tocsr()
+    ends = tuple(body.mesh.edges.edges.T)
+    return coo_array((body.mesh.edge_lengths, ends), shape=(len(body.points),) * 2).tocsr()

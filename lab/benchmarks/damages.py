@@ -13,7 +13,6 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
-from cutcell.geometry.weld import weld
 from cutcell.graph import Lattice
 
 
@@ -167,7 +166,7 @@ def open_crack(rig: Rig, seed: int) -> Damaged:
     moved = vertices.copy()
     moved[:, axis] += 3e-4 * _size(rig)
     rows = np.tile(np.arange(count), 2)
-    place = weld(Lattice.around(rig.mesh, 2).to_unit(vertices))[1]
+    place = rig.mesh.welded.index
     both = np.intersect1d(place[rig.mesh.faces[upper]], place[rig.mesh.faces[~upper]])
     cut = np.flatnonzero(np.isin(place, both))
     used = np.unique(faces)
@@ -325,7 +324,7 @@ def _patch(rig: Rig, seed: int, share: int = 20) -> NDArray[np.intp]:
     """Return vertices around one, with all that lie where these do."""
     used = np.unique(rig.mesh.faces)
     chosen = used[_around(rig.mesh.vertices[used], max(len(used) // share, 6), seed)]
-    place = weld(Lattice.around(rig.mesh, 2).to_unit(rig.mesh.vertices))[1]
+    place = rig.mesh.welded.index
     return np.intersect1d(np.flatnonzero(np.isin(place, place[chosen])), used)
 
 

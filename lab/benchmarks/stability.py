@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.geometry.weld import WELD_TOLERANCE, weld
 from cutcell.rig import Rig
 
 from .tables import Table
@@ -47,7 +46,7 @@ def variants(rig: Rig, seed: int = 0) -> Iterator[tuple[str, Rig, NDArray[np.int
     rng = np.random.default_rng(seed)
     vertices, joints, count = rig.mesh.vertices, rig.skeleton.joints, len(rig.mesh.vertices)
     size = np.ptp(vertices, axis=0).max()
-    node = weld(vertices, WELD_TOLERANCE * size)[1]
+    node = rig.mesh.welded.index
     noise = rng.uniform(-NOISE, NOISE, (int(node.max()) + 1, 3)) * size
     same = np.arange(count)
     yield "noise", moved(rig, vertices + noise[node], joints), same
@@ -59,8 +58,7 @@ def variants(rig: Rig, seed: int = 0) -> Iterator[tuple[str, Rig, NDArray[np.int
     for axis in range(3):
         turn = np.roll(np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]), (axis, axis), (0, 1))
         yield f"turn {'xyz'[axis]}", moved(rig, vertices @ turn.T, joints @ turn.T, turn), same
-    first = np.unique(node, return_index=True)[1]
-    mesh = cutcell.TriangleMesh(vertices[first], node[rig.mesh.faces])
+    mesh = cutcell.TriangleMesh(vertices[rig.mesh.welded.first], rig.mesh.welded.faces)
     yield "weld", Rig(mesh, rig.skeleton), node
 
 

@@ -73,7 +73,7 @@ class Measured:
     @cached_property
     def component(self) -> NDArray[np.int32]:
         """The connected component of each vertex of the file, shape (n,)."""
-        return self.subject.component[self.subject.welded]
+        return self.subject.mesh.component[self.subject.welded]
 
     @cached_property
     def sizes(self) -> NDArray[np.intp]:
@@ -96,7 +96,7 @@ class Measured:
         )[:, number]
         through = dict(zip(np.unique(bones.joint[chosen]).tolist(), by_node, strict=True))
         nearest = distances.at(slice(None), samples).min(axis=0)
-        points = self.subject.points[self.subject.welded[samples]]
+        points = self.subject.mesh.points[self.subject.welded[samples]]
         one, other = (self._line(points, joint) for joint in joints)
         inside = self._inside
         return Facts(

@@ -47,9 +47,10 @@ def test_split_vertices_share_normals_on_smooth_surfaces_only():
     sharp = flat.copy()
     sharp[4] = [0.5, 0.5, 1]
     faces = np.array([[0, 1, 2], [3, 4, 5]])
-    joined = smooth_normals(flat.astype(float), faces)
+    index = np.array([0, 1, 2, 1, 3, 2])
+    joined = smooth_normals(flat.astype(float), faces, index)
     np.testing.assert_allclose(joined[1], joined[3])
-    apart = smooth_normals(sharp.astype(float), faces)
+    apart = smooth_normals(sharp.astype(float), faces, index)
     assert (apart[1] * apart[3]).sum() < 0.5
 
 

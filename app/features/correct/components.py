@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from cutcell.editing import Layer
-from cutcell.geometry.triangles import label_components
-from cutcell.graph import MESH, CutCellGraph
+from cutcell.graph import CutCellGraph
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.description import Actor
 
@@ -129,11 +128,7 @@ def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.f
     return mean
 
 
-def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def components(graph: CutCellGraph) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
     """Return each vertex's connected component (n,), the largest being 0, and their sizes (c,)."""
-    links = graph.edges[graph.edge_kind == MESH]
-    label = label_components(links, graph.first_point)[graph.vertex_node]
-    sizes = np.bincount(label)
-    order = np.argsort(-sizes, kind="stable")
-    present = sizes[order] > 0
-    return np.argsort(order)[label], sizes[order][present]
+    which = graph.mesh.component[graph.vertex_node]
+    return which, np.bincount(which)

@@ -23,7 +23,6 @@ from cutcell.editing import (
 )
 from cutcell.editing.layers import vertices_of as masked_by
 from cutcell.editing.layers.contents import Content
-from cutcell.editing.layers.sources import surface_of
 from cutcell.editing.locks import locked_joints
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
@@ -78,8 +77,7 @@ def vertices_of(layers: Iterable[Layer], graph: CutCellGraph, count: int) -> NDA
 
 def components_of(graph: CutCellGraph) -> NDArray[np.integer]:
     """Return the connected component of each vertex, shape (n,)."""
-    label: NDArray[np.integer] = surface_of(graph).component[graph.vertex_node]
-    return label
+    return graph.mesh.component[graph.vertex_node]
 
 
 def changed(edits: Edits, content: Callable[[Content], Content | None]) -> Edits:

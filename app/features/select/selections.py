@@ -120,7 +120,7 @@ def select_branch(session: Session) -> None:
 def select_component(session: Session) -> None:
     """Select the connected components of the selection, of the isolated part or of the vertex."""
     state = session.state
-    component = neighbours_of(state, session.memo).component
+    component = state.rig.mesh.welded.component[state.rig.mesh.welded.index]
     chosen = selected(state)
     if state.part is not None or state.vertex is not None:
         chosen = component == component[state.part if state.part is not None else state.vertex]
@@ -178,7 +178,6 @@ def select_where(session: Session, condition: str) -> None:
             state.condition,
             state.rig,
             state.weights,
-            neighbours=neighbours_of(state, session.memo),
             distances=distances,
         )
     except CutcellError as error:

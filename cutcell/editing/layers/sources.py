@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +14,9 @@ from scipy.sparse import csr_array
 from ...errors import ParameterError, WeightsError
 from ...graph import CutCellGraph
 from ...method import Method
-from ...rig import Rig, TriangleMesh
+from ...rig import Rig
 from ...weights.prune import prune
 from ...weights.rig_falloff.rigid_accessories import attach
-from ...weights.rig_falloff.surface_operators import SurfaceOperators
 from ..locks import joint_index, lock_joints
 from ..selections import Neighbours
 from ..symmetry import balanced, find_mirror, mirrored
@@ -31,16 +29,6 @@ Which = NDArray[np.intp] | None
 Rows = tuple[Which, Any]
 NEAR = 1.5
 """Lattice cells: shells that are closer are smoothed together, through the body."""
-SURFACES: WeakKeyDictionary[CutCellGraph, SurfaceOperators] = WeakKeyDictionary()
-NEIGHBOURS: WeakKeyDictionary[TriangleMesh, Neighbours] = WeakKeyDictionary()
-"""Operators that were computed: layers are applied again after each change of them."""
-
-
-def surface_of(graph: CutCellGraph) -> SurfaceOperators:
-    """Return a graph's `SurfaceOperators`, computed once."""
-    if graph not in SURFACES:
-        SURFACES[graph] = SurfaceOperators.of(graph)
-    return SURFACES[graph]
 
 
 def vertices_of(mask: Mask, component: Callable[[], NDArray[np.integer]]) -> Which:
@@ -62,8 +50,6 @@ class RigSources:
         Its greatest number of influences holds for layers, too.
     graph : CutCellGraph or None
         Needed by parts, attached ones, and smoothing through the body.
-    operators : callable
-        Returns the graph's `SurfaceOperators`.
     computed : callable
         Returns the weights, shape (n, j), of a layer with a `Computed` content.
     """
@@ -71,7 +57,6 @@ class RigSources:
     rig: Rig
     method: Method
     graph: CutCellGraph | None = None
-    operators: Callable[[], SurfaceOperators] | None = None
     computed: Callable[[Layer], NDArray[np.float64]] | None = None
 
     @cached_property
@@ -82,7 +67,7 @@ class RigSources:
     def component(self) -> NDArray[np.integer]:
         """Return the connected component of each vertex, shape (n,)."""
         assert self.graph is not None
-        return self._surface().component[self.graph.vertex_node]
+        return self.graph.mesh.component[self.graph.vertex_node]
 
     def rows(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         """Return which of some vertices a layer's content has weights for, and their rows.
@@ -90,10 +75,6 @@ class RigSources:
         Shapes: below (n, j), the weights below the layer; returns rows (k, j).
         """
         return getattr(self, f"_{layer.content.kind}")(layer, below, which)
-
-    def _surface(self) -> SurfaceOperators:
-        assert self.graph is not None
-        return surface_of(self.graph) if self.operators is None else self.operators()
 
     def _computed(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         assert self.computed is not None
@@ -129,14 +110,12 @@ class RigSources:
 
     def _attached(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         assert self.graph is not None
-        surface, node = self._surface(), self.graph.vertex_node
-        label = surface.component[node]
+        node, label = self.graph.vertex_node, self.component()
         touching = np.zeros(label.max() + 1, np.bool_)
         touching[label if which is None else label[which]] = True
         if touching[label].all():
             raise ParameterError("every component is to follow where it touches, and none is left")
-        first = np.unique(node, return_index=True)[1]
-        attached = attach(self.graph, surface, touching, below[first])
+        attached = attach(self.graph, touching, below[self.graph.mesh.first])
         assert which is not None
         rows = attached[node[which]]
         if self.rig.allowed is not None:
@@ -173,12 +152,9 @@ class RigSources:
         joints, most = list(layer.content.joints), self.method.max_influences
         return which, lock_joints(self.rig, below, joints, most, which)
 
-    @property
+    @cached_property
     def _over(self) -> Neighbours:
-        mesh = self.rig.mesh
-        if mesh not in NEIGHBOURS:
-            NEIGHBOURS[mesh] = Neighbours.of(mesh)
-        return NEIGHBOURS[mesh]
+        return Neighbours.of(self.rig.mesh)
 
     @cached_property
     def _through(self) -> Neighbours:

@@ -16,7 +16,6 @@ from ...geodesics import BoneDistances
 from ...rig import Rig
 from ...rig.checks import LONG, shown
 from ..locks import joint_index
-from .neighbours import Neighbours
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 40
@@ -45,7 +44,6 @@ def vertices_where(
     rig: Rig,
     weights: NDArray[np.float64],
     *,
-    neighbours: Neighbours | None = None,
     distances: BoneDistances | None = None,
 ) -> NDArray[np.bool_]:
     """Return which vertices a condition holds for, shape (n,).
@@ -62,8 +60,6 @@ def vertices_where(
     condition : str
     rig : Rig
     weights : array, shape (n, j)
-    neighbours : Neighbours, optional
-        Of the rig's mesh; found if they are needed.
     distances : BoneDistances, optional
         Of the rig. Conditions on distances need them.
 
@@ -76,7 +72,7 @@ def vertices_where(
     """
     if len(condition) > MAX_LENGTH:
         raise ParameterError(f"a condition may have {MAX_LENGTH:,} characters at most")
-    holds = _Parser(condition, rig, weights, neighbours, distances).whole()
+    holds = _Parser(condition, rig, weights, distances).whole()
     return np.array(np.broadcast_to(holds, len(rig.mesh.vertices)))
 
 
@@ -87,7 +83,6 @@ class _Parser:
     _text: str
     _rig: Rig
     _weights: NDArray[np.float64]
-    _neighbours: Neighbours | None
     _distances: BoneDistances | None
     _at: int = 0
     _depth: int = 0
@@ -157,8 +152,8 @@ class _Parser:
         if self._word("influences"):
             return (self._weights > 0).sum(axis=1).astype(float)
         if self._word("part"):
-            self._neighbours = self._neighbours or Neighbours.of(self._rig.mesh)
-            return self._neighbours.component.astype(float) + 1
+            mesh = self._rig.mesh.welded
+            return mesh.component[mesh.index].astype(float) + 1
         self._fail("a number, weight, file weight, distance, influences or part")
 
     def _distance(self) -> Value:

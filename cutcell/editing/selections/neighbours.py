@@ -8,11 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, dia_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...geometry.edges import find_edges
-from ...geometry.weld import WELD_TOLERANCE, weld
 from ...graph import CutCellGraph
 from ...rig import TriangleMesh
 
@@ -38,14 +35,12 @@ class Neighbours:
     @classmethod
     def of(cls, mesh: TriangleMesh, within: float = 0.0) -> Neighbours:
         """Link welded vertices along the edges of a mesh, and others within a distance."""
-        side = float(np.ptp(mesh.bounds, axis=0).max())
-        points, welded = weld(mesh.vertices, WELD_TOLERANCE * side)
-        pairs = find_edges(welded[mesh.faces]).edges
+        welded = mesh.welded
+        pairs = welded.edges.edges
         if within:
-            first = np.unique(welded, return_index=True)[1]
-            near = cKDTree(mesh.vertices[first]).query_pairs(within, output_type="ndarray")
-            pairs = np.concatenate([pairs, near])
-        return cls(welded, _symmetric(pairs, len(points)))
+            tree = cKDTree(mesh.vertices[welded.first])
+            pairs = np.concatenate([pairs, tree.query_pairs(within, output_type="ndarray")])
+        return cls(welded.index, _symmetric(pairs, len(welded.points)))
 
     @classmethod
     def through(cls, graph: CutCellGraph) -> Neighbours:
@@ -60,13 +55,6 @@ class Neighbours:
     def shrunk(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Remove chosen vertices, shape (n,), that have a neighbour which is not chosen."""
         return ~self.grown(~self._at_nodes(chosen)[self.welded])
-
-    @cached_property
-    def component(self) -> NDArray[np.intp]:
-        """The number of each vertex's connected component, shape (n,); the largest is 0."""
-        label = connected_components(self.links, directed=False)[1][self.welded]
-        order = np.argsort(-np.bincount(label), kind="stable")
-        return np.argsort(order, kind="stable")[label]
 
     def smooth(
         self, weights: NDArray[np.float64], steps: int, which: NDArray[np.intp] | None = None

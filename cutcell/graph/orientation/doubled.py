@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.edges import find_edges
 from ...geometry.triangles import normals
+from ...geometry.welded import WeldedMesh
 from .patches import NONE, find_patches
 
 OPEN = 0.5
@@ -14,21 +16,18 @@ OPEN = 0.5
 The area of the caps of their holes is no less."""
 
 
-def find_reversed(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def find_reversed(mesh: WeldedMesh) -> NDArray[np.bool_]:
     """Find the faces that repeat an earlier one the other way round, except those of sheets.
 
     A sheet keeps both sides, whose winding numbers cancel, and so does a wall between two bodies,
-    unless a surface goes on beyond it.
-
-    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,), see `find_edges`; returns (m,).
+    unless a surface goes on beyond it. Returns shape (m,).
     """
+    faces = mesh.faces
     is_reversed = np.zeros(len(faces), np.bool_)
     # Such a face has no manifold edge with any but its copy.
-    beside = partner.reshape(-1, 3) // 3
+    beside = mesh.edges.partner.reshape(-1, 3) // 3
     alone = (beside == NONE) | (beside == beside.max(axis=1, keepdims=True))
-    alone[:, 0] &= (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    alone[:, 0] &= mesh.is_whole
     chosen = np.flatnonzero(alone.all(axis=1))
     corners = np.sort(faces[chosen], axis=1)
     _, which, uses = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
@@ -43,9 +42,9 @@ def find_reversed(
     # Which of two faces comes first says nothing: without the others, patches are oriented alike.
     single = faces.copy()
     single[second] = faces[second, :1]
-    areas = normals(vertices[single])
+    areas = normals(mesh.points[single])
     sizes = np.linalg.norm(areas, axis=1)
-    flips, patch, *_ = find_patches(vertices, single, find_edges(single).partner, sizes)
+    flips, patch, *_ = find_patches(replace(mesh, faces=single), sizes)
     areas[flips] *= -1
     sums = np.stack([np.bincount(patch, column) for column in areas.T], axis=1)
     is_sheet = np.linalg.norm(sums, axis=1) >= OPEN * np.bincount(patch, sizes)

@@ -9,15 +9,15 @@ neither is a sheet, which is visible from both sides and encloses nothing.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.edges import find_edges
-from ...geometry.weld import weld
+from ...geometry.boundary import boundary_of
+from ...geometry.welded import WeldedMesh
 from ...rig import TriangleMesh
 from ...runtime.progress import Tell
-from ..lattice import Lattice
-from ..winding.boundary import boundary_of
 from ..winding.treecode.caps import cap_holes
 from .exposure import exposure
 from .patches import find_patches, measure_faces
@@ -57,40 +57,26 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
     Takayama, Jacobson, Kavan & Sorkine-Hornung, "A simple method for correcting facet
     orientations in polygon meshes based on ray casting", 2014.
     """
-    vertices, index = weld(Lattice.around(mesh, 2).to_unit(mesh.vertices))
-    faces = index[mesh.faces]
-    return find_inverted(vertices, faces, find_edges(faces).partner)[0]
+    return find_inverted(mesh.welded)[0]
 
 
 def find_inverted(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    partner: NDArray[np.int32],
-    report: Tell = lambda done: None,
+    mesh: WeldedMesh, report: Tell = lambda done: None
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Find the welded faces that are inside out, and those around the voids of a hollow body.
-
-    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,); returns (m,) twice.
-    """
-    a, b, c = faces.T
-    proper = (a != b) & (b != c) & (c != a)
-    if proper.all():
-        return _find_inverted(vertices, faces, partner, report)
-    result = np.zeros((2, len(faces)), np.bool_)
-    if proper.any():
-        faces = faces[proper]
-        result[:, proper] = _find_inverted(vertices, faces, find_edges(faces).partner, report)
+    """Find faces that are inside out, (m,), and those around the voids of a hollow body, (m,)."""
+    if mesh.is_whole.all():
+        return _find_inverted(mesh, report)
+    result = np.zeros((2, len(mesh.faces)), np.bool_)
+    if mesh.is_whole.any():
+        whole = replace(mesh, faces=mesh.faces[mesh.is_whole])
+        result[:, mesh.is_whole] = _find_inverted(whole, report)
     return result[0], result[1]
 
 
-def _find_inverted(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    partner: NDArray[np.int32],
-    report: Tell,
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _find_inverted(mesh: WeldedMesh, report: Tell) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    vertices, faces = mesh.points, mesh.faces
     areas, volumes = measure_faces(vertices, faces)
-    flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
+    flips, patch, rims, of_rim = find_patches(mesh, areas)
     faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
     area = np.bincount(patch, areas)
     holes, missing = _cap(vertices, rims, of_rim, len(area))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...geometry.triangles import label_components, normals
 from ...geometry.vectors import between, dot, length, triangle_normal
+from ...geometry.welded import WeldedMesh
 from ...runtime.compiled import compiled
 
 NONE = -1
@@ -37,42 +38,37 @@ class Patches(NamedTuple):
     of_rim: NDArray[np.int32]
 
 
-def find_patches(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    partner: NDArray[np.int32],
-    areas: NDArray[np.float64],
-) -> Patches:
+def find_patches(mesh: WeldedMesh, areas: NDArray[np.float64]) -> Patches:
     """Orient faces consistently, component by component.
 
     Two faces at a manifold edge are consistent if they traverse it in opposite directions. Of
     the two orientations of a component, the one that flips less area is taken. A component that
     is not orientable (a Moebius strip) is left as it is, and divided into several patches.
 
-    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,), areas (m,).
+    Shapes: areas (m,).
     """
+    faces, partner = mesh.faces, mesh.edges.partner
     flips, patch, is_plain, is_orientable = _flood(faces, partner, areas)
     if is_plain:
         return Patches(flips, patch, np.empty((0, 2), np.int32), np.empty(0, np.int32))
     if flips.any() or not is_orientable:
-        partner = _without_duplicates(vertices, faces, partner)
+        partner = _without_duplicates(mesh)
         flips, patch, _, is_orientable = _flood(faces, partner, areas)
     if not is_orientable:
         patch = _split(faces, partner, flips)
     return Patches(flips, patch, *_rims(faces, partner, flips, patch))
 
 
-def _without_duplicates(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
-) -> NDArray[np.int32]:
+def _without_duplicates(mesh: WeldedMesh) -> NDArray[np.int32]:
     """Return the partners without pairs of duplicate faces, which have the same normal.
 
     To flip one of them would enclose a body without volume.
     """
+    faces, partner = mesh.faces, mesh.edges.partner
     half_edge = np.flatnonzero(partner >= 0)
     start = faces.ravel()
     half_edge = half_edge[start[half_edge] == start[partner[half_edge]]]
-    corners = vertices[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
+    corners = mesh.points[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
     pairs = normals(corners)
     sizes = np.linalg.norm(pairs, axis=2).prod(axis=0)
     same = np.einsum("ij,ij->i", *pairs) > SAME * sizes

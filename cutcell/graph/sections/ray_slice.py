@@ -139,7 +139,7 @@ def slice_rays(
 
     surface = prepare_surface(mesh, resolution, orient, fill)
     caster = CASTERS.get(rays, cast_rays)
-    hits = caster(surface.vertices, surface.faces, resolution, axis)
+    hits = caster(surface.mesh.points, surface.mesh.faces, resolution, axis)
     hits = part_at_contacts(hits, surface.part)
     numbers = np.arange(resolution)
     first = normal == AXES[axis][0]
@@ -159,9 +159,9 @@ def slice_rays(
     )
     middle = segments.midpoints(shown)
     if winding == "exact":
-        at_middle = WindingNumbers(surface.vertices, surface.faces).at(middle)
+        at_middle = WindingNumbers(surface.mesh).at(middle)
     else:
-        at_middle = fast_winding_numbers(surface.vertices, surface.faces, middle)
+        at_middle = fast_winding_numbers(surface.mesh.points, surface.mesh.faces, middle)
     ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))
     in_slice = np.isin(ray, numbers)
     return RaySlice(

@@ -20,13 +20,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ParameterError
 from ...geometry.sorting import sort_by_group
-from ...geometry.weld import weld
+from ...geometry.welded import WeldedMesh
 from ...rig import TriangleMesh
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads, parts
-from ..lattice import Lattice
 from ..rays import column_span, edge_height, height_between
-from .boundary import find_boundary
 
 MAX_CELLS = 16
 """Cells of the grid that a face is listed in, on average: those of a fan cover most of it."""
@@ -68,30 +66,23 @@ def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]
         raise ParameterError(f"points must have the shape (q, 3), not {points.shape}")
     if not np.isfinite(points).all():
         raise ParameterError("points must be finite numbers")
-    lattice = Lattice.around(mesh, 2)
-    vertices, index = weld(lattice.to_unit(mesh.vertices))
-    return WindingNumbers(vertices, index[mesh.faces]).at(lattice.to_unit(points))
+    return WindingNumbers(mesh.welded).at(mesh.cube.to_unit(points))
 
 
 class WindingNumbers:
-    """A welded mesh in the unit cube, prepared for many calls of `at`.
+    """The winding numbers of a mesh, prepared for many calls of `at`."""
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3), float64
-    faces : array, shape (m, 3), int32
-    """
-
-    def __init__(self, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
-        self._mesh, self._boundary = (vertices, faces), find_boundary(faces)
-        self._bins = _bin_faces(vertices, faces)
+    def __init__(self, mesh: WeldedMesh) -> None:
+        self._mesh = mesh
+        self._bins = _bin_faces(mesh.points, mesh.faces)
 
     def at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the winding number at points (q, 3) of the unit cube, shape (q,)."""
 
         def number_at(part: slice) -> NDArray[np.float64]:
-            ahead = _crossings_ahead(points[part], *self._mesh, *self._bins)
-            return ahead + boundary_angles(self._mesh[0], self._boundary, points[part])
+            mesh = self._mesh
+            ahead = _crossings_ahead(points[part], mesh.points, mesh.faces, *self._bins)
+            return ahead + boundary_angles(mesh.points, mesh.boundary, points[part])
 
         return np.concatenate([np.empty(0), *in_threads(number_at, parts(len(points)))])
 

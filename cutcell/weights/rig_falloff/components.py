@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...geodesics import Bones
 from ...geometry.sorting import sort_by_group
+from ...geometry.welded import WeldedMesh
 from ...graph.rays import column_span, height_between
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads
@@ -21,35 +22,18 @@ INSIDE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 
 
-def longest_sides(points: NDArray[np.float64], component: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Measure the longest side of each component, shape (components,), from points (k, 3)."""
-    low = np.full((int(component.max()) + 1, 3), np.inf)
-    high = -low
-    np.minimum.at(low, component, points)
-    np.maximum.at(high, component, points)
-    return (high - low).max(axis=1)
-
-
-def bone_containment(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    component: NDArray[np.int32],
-    bones: Bones,
-) -> NDArray[np.float64]:
-    """Measure which part of each bone lies inside each component.
-
-    Shapes: points (k, 3), faces (m, 3), component (k,); returns (components, b).
-    """
+def bone_containment(mesh: WeldedMesh, bones: Bones) -> NDArray[np.float64]:
+    """Measure which part of each bone lies inside each component, shape (components, b)."""
     along = (np.arange(POINTS) + 0.5) / POINTS
     samples = bones.start[:, None] + along[:, None] * (bones.end - bones.start)[:, None]
     samples = samples.reshape(-1, 3)
-    count = int(component.max()) + 1
-    of_face = component[faces[:, 0]]
+    count = len(mesh.longest_sides)
+    of_face = mesh.component[mesh.faces[:, 0]]
 
     def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
         turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
-        turned = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
-        face, sample, sign = _intersect(*turned, faces)
+        turned = np.ascontiguousarray(mesh.points[:, turn]), np.ascontiguousarray(samples[:, turn])
+        face, sample, sign = _intersect(*turned, mesh.faces)
         return of_face[face], sample, sign
 
     hits = in_threads(along_axis, range(3))

@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
-from ...geometry.triangles import face_edges
 from ...geometry.vectors import TIE
+from ...geometry.welded import WeldedMesh
 from ...rig import Skeleton
-from .components import SMALL, bone_containment, longest_sides
-from .surface_operators import SurfaceOperators
+from .components import SMALL, bone_containment
 
 PART_OF_BODY = 0.1
 """Maximum area of a component of one joint, such as an eyeball, as part of the largest component's.
@@ -27,7 +26,7 @@ rigid down to the first."""
 
 
 def joint_containment(
-    surface: SurfaceOperators, bones: Bones, skeleton: Skeleton | None, joints: int
+    surface: WeldedMesh, bones: Bones, skeleton: Skeleton | None, joints: int
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Measure which part of each joint's bones lies inside each component, and which it owns.
 
@@ -44,7 +43,7 @@ def joint_containment(
         np.concatenate([bones.end, place]),
         np.concatenate([bones.joint, with_bones]),
     )
-    part = bone_containment(surface.points, surface.faces, surface.component, segments)
+    part = bone_containment(surface, segments)
     of_bone, inside = part[:, : len(bones.joint)], part[:, len(bones.joint) :] > 0
     containment, starts = np.zeros((2, len(part), joints))
     np.maximum.at(containment.T, bones.joint, of_bone.T)
@@ -53,7 +52,7 @@ def joint_containment(
 
 
 def _owned(
-    surface: SurfaceOperators,
+    surface: WeldedMesh,
     skeleton: Skeleton | None,
     containment: NDArray[np.float64],
     starts: NDArray[np.bool_],
@@ -68,11 +67,11 @@ def _owned(
     """
     areas = np.bincount(surface.component, surface.areas, len(starts))
     chosen = (starts.sum(axis=1) == 1) & (areas <= PART_OF_BODY * areas.max())
-    chosen &= longest_sides(surface.points, surface.component) <= SMALL
+    chosen &= surface.longest_sides <= SMALL
     if skeleton is None or not chosen.any() or areas.max() < BODY * areas.sum():
         return np.zeros_like(starts)
-    edges, uses = np.unique(face_edges(surface.faces), axis=0, return_counts=True)
-    chosen[surface.component[edges[uses == 1, 0]]] = False  # open ones
+    rims = surface.edges.edges[surface.edges.uses == 1]
+    chosen[surface.component[rims]] = False  # open ones
     is_last = (skeleton.subtree & skeleton.deform).sum(axis=1) <= 1
     owned = starts & chosen[:, None] & is_last
     elsewhere = np.where(~starts & chosen[:, None], containment, 0).max(axis=0)
@@ -103,7 +102,7 @@ def cross_component_penalty(
 
 
 def make_rigid(
-    surface: SurfaceOperators, weights: NDArray[np.float64], independent: NDArray[np.bool_]
+    surface: WeldedMesh, weights: NDArray[np.float64], independent: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
     """Make components rigid to the joint that nearly all of their area follows: plates, wheels.
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import splu
 
+from ...geometry.welded import WeldedMesh
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads, parts
-from .surface_operators import SurfaceOperators
 
 SHARPNESS = 2.5
 """c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
@@ -126,9 +126,7 @@ class Diffusion:
     factors: Factors
 
     @classmethod
-    def over(
-        cls, surface: SurfaceOperators, depth: NDArray[np.float64], resolution: int
-    ) -> Diffusion:
+    def over(cls, surface: WeldedMesh, depth: NDArray[np.float64], resolution: int) -> Diffusion:
         """Factorise the equation's matrix: depth (k,)."""
         depth = np.maximum(depth, MIN_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
@@ -148,8 +146,8 @@ class Diffusion:
                 break
             levels.append(Level(matrix, group))
             size, coarse = np.bincount(group), np.bincount(group, coarse)
-            points = [np.bincount(group, axis) / size for axis in surface.points.T]
-            surface = SurfaceOperators.over(np.stack(points, axis=1), group[surface.faces])
+            points = np.stack([np.bincount(group, x) / size for x in surface.points.T], axis=1)
+            surface = WeldedMesh.of(points, group[surface.faces])
         return cls(screening, tuple(levels), Factors.of(matrix))
 
     def spread(

@@ -13,7 +13,6 @@ from ...geometry.vectors import TIE, segment_fraction
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment
-from .surface_operators import SurfaceOperators
 
 POWER = 30
 """A vertex belongs to its nearest joint; another that is 10 % farther counts a seventeenth."""
@@ -43,8 +42,6 @@ class Division:
     Parameters
     ----------
     distances : BoneDistances
-    surface : SurfaceOperators
-        The surface of their graph.
     containment, penalty : arrays, shape (components, j)
         See `joint_containment`, and `cross_component_penalty`, which adjustments change.
     radius : array, shape (j,)
@@ -56,7 +53,6 @@ class Division:
     """
 
     distances: BoneDistances
-    surface: SurfaceOperators
     containment: NDArray[np.float64]
     penalty: NDArray[np.float64]
     radius: NDArray[np.float64]
@@ -67,15 +63,15 @@ class Division:
     def by(
         cls,
         distances: BoneDistances,
-        surface: SurfaceOperators,
         adjustments: Adjustments | None = None,
         before: Division | None = None,
     ) -> Division:
         """Divide a surface by distances: first without radii, which are measured of what results.
 
-        Where distances are the same as those `before`, which is of the same surface, its weights
+        Where distances are the same as those `before`, which is of the same graph, its weights
         are taken over.
         """
+        surface = distances.graph.mesh
         joints, vertices = distances.at_welded.shape
         containment, owned = joint_containment(surface, distances.bones, distances.skeleton, joints)
         penalty = cross_component_penalty(containment, owned)
@@ -88,7 +84,7 @@ class Division:
             weights = before.weights.copy()
             chosen = before.beyond | (distance != before.distances.at_welded).any(axis=0)
             chosen |= (penalty != before.penalty).any(axis=1)[surface.component]
-        _divide(distances, surface, penalty, np.full(joints, np.inf), chosen, weights)
+        _divide(distances, penalty, np.full(joints, np.inf), chosen, weights)
         resolution = distances.graph.lattice.resolution
         radius = _radii(weights, distance, surface.areas, distances.bones, resolution)
         if adjustments is not None:
@@ -96,20 +92,19 @@ class Division:
         beyond = np.zeros(vertices, np.bool_)
         for j in np.flatnonzero(np.isfinite(radius)):
             beyond |= (distance[j] > radius[j]) & (weights[:, j] > MIN_SHARE)
-        _divide(distances, surface, penalty, radius, beyond, weights)
-        return cls(distances, surface, containment, penalty, radius, beyond, weights)
+        _divide(distances, penalty, radius, beyond, weights)
+        return cls(distances, containment, penalty, radius, beyond, weights)
 
 
 def _divide(
     distances: BoneDistances,
-    surface: SurfaceOperators,
     penalty: NDArray[np.float64],
     radius: NDArray[np.float64],
     chosen: NDArray[np.bool_],
     weights: NDArray[np.float64],
 ) -> None:
     """Divide chosen vertices (k,) among joints: write their weights (k, j)."""
-    bones = distances.bones
+    bones, surface = distances.bones, distances.graph.mesh
     _divide_by_distance(
         surface.points,
         surface.normals,

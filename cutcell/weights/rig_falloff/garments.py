@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..context import Context
-from .components import SMALL, longest_sides
+from .components import SMALL
 from .containment import ramp
 from .rigid_accessories import nearest_on_body
 
@@ -24,10 +24,10 @@ def drape(
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
-    containment, surface = context.division.containment, context.operators()
+    containment, surface = context.division.containment, context.graph.mesh
     component, areas = surface.component, surface.areas
     has_bones = np.asarray(containment.max(axis=1) > 0)
-    is_garment = ~has_bones & ~independent & (longest_sides(surface.points, component) > SMALL)
+    is_garment = ~has_bones & ~independent & (surface.longest_sides > SMALL)
     of_body = areas * (weights @ (containment.max(axis=0) >= IN_BODY))
     part = np.bincount(component, of_body) / np.maximum(np.bincount(component, areas), 1e-300)
     follows = np.where(is_garment, ramp(part, *OF_BODY), 0)[component]

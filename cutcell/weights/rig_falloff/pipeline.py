@@ -23,10 +23,10 @@ def share(context: Context) -> NDArray[np.float64]:
 
     Returns each joint's share of the welded vertices, (k, j).
     """
-    distances, surface = context.distances, context.operators()
+    distances, surface = context.distances, context.graph.mesh
     depth, resolution = distances.at_welded.min(axis=0), context.graph.lattice.resolution
     context.division, context.diffusion = run_parallel(
-        lambda: Division.by(distances, surface, context.adjustments),
+        lambda: Division.by(distances, context.adjustments),
         lambda: Diffusion.over(surface, depth, resolution),
     )
     return context.division.weights
@@ -39,13 +39,13 @@ def spread(context: Context) -> NDArray[np.float64]:
 
 def with_rigid_parts(context: Context) -> NDArray[np.float64]:
     """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
-    containment, surface = context.division.containment, context.operators()
+    containment, surface = context.division.containment, context.graph.mesh
     weights, independent = context.weights, np.zeros(len(containment), np.bool_)
     if context.adjustments is not None:
         independent[surface.component[context.adjustments.independent]] = True
     if len(containment) > 1:
         weights = make_rigid(surface, drape(context, weights, independent), independent)
-    return attach_accessories(context.graph, surface, containment, weights, independent)
+    return attach_accessories(context.graph, containment, weights, independent)
 
 
 def without_tail(context: Context) -> NDArray[np.float64]:

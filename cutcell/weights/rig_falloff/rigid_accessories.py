@@ -9,9 +9,8 @@ from scipy.sparse import csr_array
 from ...geodesics.nearest import NodeTree
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
-from .components import SMALL, longest_sides
+from .components import SMALL
 from .containment import ramp, strongest
-from .surface_operators import SurfaceOperators
 
 CONTACT = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
@@ -23,7 +22,6 @@ touch, or is the strongest on as much of the contact; up to the first, the mean 
 
 def attach_accessories(
     graph: CutCellGraph,
-    surface: SurfaceOperators,
     containment: NDArray[np.float64],
     weights: NDArray[np.float64],
     independent: NDArray[np.bool_],
@@ -34,10 +32,10 @@ def attach_accessories(
 
     Shapes: containment (components, j), weights (k, j), independent (components,); returns (k, j).
     """
-    points, component, areas = surface.points, surface.component, surface.areas
+    component, areas = graph.mesh.component, graph.mesh.areas
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
-    is_small = longest_sides(points, component) <= SMALL
+    is_small = graph.mesh.longest_sides <= SMALL
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
@@ -45,12 +43,11 @@ def attach_accessories(
     # A mesh that is in patches all over is no body with things on it.
     if areas[on_body].sum() < areas.sum() / 2:
         return weights
-    return attach(graph, surface, is_accessory, weights)
+    return attach(graph, is_accessory, weights)
 
 
 def attach(
     graph: CutCellGraph,
-    surface: SurfaceOperators,
     is_accessory: NDArray[np.bool_],
     weights: NDArray[np.float64],
 ) -> NDArray[np.float64]:
@@ -58,7 +55,7 @@ def attach(
 
     `weights` and what is returned have the shape (k, j).
     """
-    points, component, areas = surface.points, surface.component, surface.areas
+    points, component, areas = graph.mesh.points, graph.mesh.component, graph.mesh.areas
     on_body = ~is_accessory[component]
     attached = np.flatnonzero(~on_body)
     distance, mean = nearest_on_body(graph, on_body, points[attached])

@@ -11,7 +11,6 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from cutcell.geometry.edges import find_edges
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
 from cutcell.weights.paper_kernel import paper_kernel
@@ -214,8 +213,7 @@ def _unirig_links(body: Body, voxels: Voxels) -> tuple[NDArray, NDArray]:
     """Link voxels, vertices with the nearest voxel, and vertices along edges."""
     between, lengths = voxels.links(connectivity=6)
     count = len(body.points)
-    edges = find_edges(body.faces).edges
-    along = np.linalg.norm(body.points[edges[:, 0]] - body.points[edges[:, 1]], axis=1)
+    edges, along = body.mesh.edges.edges, body.mesh.edge_lengths
     away, nearest = cKDTree(voxels.centres).query(body.points)
     near = np.flatnonzero(away < UNIRIG_REACH / voxels.resolution)
     return (

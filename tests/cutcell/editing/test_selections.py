@@ -61,7 +61,7 @@ def test_shrinking_undoes_growing_no_farther_than_it_was(split):
 
 
 def test_components_are_numbered_from_the_largest(split):
-    component = Neighbours.of(split).component
+    component = split.welded.component[split.welded.index]
     assert np.array_equal(component, split.vertices[:, 1] > 2)
 
 

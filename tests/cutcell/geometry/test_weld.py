@@ -63,6 +63,6 @@ def test_edges_and_their_balance(name):
             if start != end:
                 uses[min(start, end), max(start, end)] += 1
                 balance[min(start, end), max(start, end)] += 1 if start < end else -1
-    edges, result, _ = find_edges(faces)
+    edges, result, *_ = find_edges(faces)
     assert list(map(tuple, edges.tolist())) == sorted(uses)
     assert result.tolist() == [balance[tuple(edge)] for edge in edges.tolist()]

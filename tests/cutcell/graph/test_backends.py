@@ -110,7 +110,7 @@ def test_doubled_triangles_are_all_found(caster):
 def prepared(vertices, faces, resolution):
     """Return the surface of a mesh and its hits; faces stay as they are."""
     surface = prepare_surface(TriangleMesh(vertices, faces), resolution, orient=False)
-    return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
+    return surface, cast_all_rays(surface.mesh.points, surface.mesh.faces, resolution)
 
 
 def intervals(surface, hits, tau, function):
@@ -121,14 +121,14 @@ def intervals(surface, hits, tau, function):
 
 def fast_intervals(surface, hits, tau):
     """Return the intervals inside by libigl's winding numbers."""
-    fast = partial(libraries.fast_winding_numbers, surface.vertices, surface.faces)
+    fast = partial(libraries.fast_winding_numbers, surface.mesh.points, surface.mesh.faces)
     return intervals(surface, hits, tau, fast)
 
 
 def both_runs(mesh, tau):
     """Return the intervals along each axis as sets: by exact winding numbers, and by libigl's."""
     surface, hits = prepared(*mesh, 24)
-    exact = WindingNumbers(surface.vertices, surface.faces)
+    exact = WindingNumbers(surface.mesh)
     plain = intervals(surface, hits, tau, exact.at)
     pairs = zip(plain, fast_intervals(surface, hits, tau), strict=True)
     return [

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.treecode.caps import cap_holes, smallest_caps
 from cutcell.graph.winding.treecode.clusters import ROOT, build_tree
 from cutcell.graph.winding.treecode.expansion import (
@@ -63,8 +62,8 @@ SHAPES = meshes.OPEN | {"confetti": confetti}
 @pytest.mark.parametrize("name", SHAPES)
 def test_caps_close_the_mesh(name, cap):
     vertices, faces = SHAPES[name]()
-    caps = cap(vertices, find_boundary(faces))
-    assert len(find_boundary(np.concatenate([faces, caps.faces])).loop) == 0
+    caps = cap(vertices, meshes.boundary(faces))
+    assert len(meshes.boundary(np.concatenate([faces, caps.faces])).loop) == 0
     assert all(
         len(set(caps.loop[a:b])) == b - a >= 3
         for a, b in zip(caps.start[:-1], caps.start[1:], strict=True)
@@ -79,19 +78,19 @@ def test_rims_along_each_other_are_joined_by_strips():
     i, j = np.arange(24), np.roll(np.arange(24), -1)
     tube = np.concatenate([np.stack([i, j, j + 24], axis=1), np.stack([i, j + 24, i + 24], axis=1)])
     vertices, faces = np.concatenate(rings), np.concatenate([tube[:, ::-1], tube + 48])
-    boundary = find_boundary(faces.astype(np.int32))
+    boundary = meshes.boundary(faces.astype(np.int32))
     caps = smallest_caps(vertices, boundary)
     a, b, c = (caps.vertices[corner] for corner in caps.faces.T)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
     across = 24 * np.sin(2 * np.pi / 24) / 2 * (0.2**2 - 0.198**2)
     np.testing.assert_allclose(area, 2 * across)
-    assert len(find_boundary(np.concatenate([faces, caps.faces]).astype(np.int32)).loop) == 0
+    assert len(meshes.boundary(np.concatenate([faces, caps.faces]).astype(np.int32)).loop) == 0
 
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_expansion_is_right_within_its_error(name):
     vertices, faces = SHAPES[name]()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     clusters = build_tree(caps)
     rng = np.random.default_rng(1)
     fields, ways, places = [], [], []  # evaluated at once by the slow oracle
@@ -115,7 +114,7 @@ def test_expansion_is_right_within_its_error(name):
 @pytest.mark.parametrize("name", SHAPES)
 def test_winding_number_of_caps_is_right_within_its_error(name):
     vertices, faces = SHAPES[name]()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     clusters = build_tree(caps)
     rng = np.random.default_rng(2)
     for count, size in ((1, 0.0), (5, 0.02), (16, 0.2)):
@@ -134,7 +133,7 @@ def test_winding_number_of_caps_is_right_within_its_error(name):
 def test_the_bound_is_no_more_than_it_must_be():
     """Far from many small triangles, it is loose by what they could do at worst, not by more."""
     vertices, faces = confetti()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     place = np.array([0.9, 0.9, 0.95])
     value, error = (x[0] for x in winding_of_caps(build_tree(caps), place[None], 1e-3))
     expected = naive.winding_number(caps.vertices, caps.faces, place[None])[0]
@@ -155,7 +154,7 @@ def test_a_translated_expansion_is_the_same_function():
 
 def test_an_expansion_in_a_ball_crossed_by_a_cap_decides_nothing():
     vertices, faces = meshes.open_box()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     clusters = build_tree(caps)
     middle = caps.vertices[caps.faces[0]].mean(axis=0)
     assert expand(clusters, middle + 0.1, 0.01, 1e-2)[ERROR] < 0.5
@@ -165,6 +164,6 @@ def test_an_expansion_in_a_ball_crossed_by_a_cap_decides_nothing():
 
 def test_a_point_on_a_cap_is_not_decided_by_rounding():
     vertices, faces = meshes.open_box()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     spot = np.array([0.4, 0.35, 0.25]) @ caps.vertices[caps.faces[0]]
     assert winding_of_caps(build_tree(caps), spot[None], 1e-6)[1] == np.inf

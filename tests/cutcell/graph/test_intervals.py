@@ -12,7 +12,6 @@ from cutcell import TooLargeError, TriangleMesh
 from cutcell.graph.rays import cast_all_rays
 from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
-from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.exact import WindingNumbers, boundary_angles
 from cutcell.graph.winding.treecode.caps import smallest_caps
 from cutcell.graph.winding.treecode.cells import MAX_NEAR, classify_cells
@@ -80,7 +79,7 @@ SHAPES = SOUPS | meshes.OPEN
 def prepared(vertices, faces, resolution):
     """Return the surface of a mesh and its hits; faces stay as they are."""
     surface = prepare_surface(TriangleMesh(vertices, faces), resolution, orient=False)
-    return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
+    return surface, cast_all_rays(surface.mesh.points, surface.mesh.faces, resolution)
 
 
 def treecode_intervals(surface, hits, tau, report=lambda done: None):
@@ -91,7 +90,7 @@ def treecode_intervals(surface, hits, tau, report=lambda done: None):
 
 def check_against_plain(surface, hits, tau):
     """Compare the intervals with those by winding numbers at all midpoints."""
-    exact = PointwiseWindingNumbers(surface, WindingNumbers(surface.vertices, surface.faces).at)
+    exact = PointwiseWindingNumbers(surface, WindingNumbers(surface.mesh).at)
     expected = inside_intervals(hits, tau, exact, surface.resolution)
     for one, other in zip(treecode_intervals(surface, hits, tau), expected, strict=True):
         # Without length, the midpoint is on the surface, where either number is right.
@@ -116,7 +115,7 @@ def test_intervals_equal_the_plain_ones(name, tau):
 @pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)
 def test_intervals_of_rigs_equal_the_plain_ones(path):
     surface = prepare_surface(cutcell.load(path).mesh, 32)
-    hits = cast_all_rays(surface.vertices, surface.faces, surface.resolution)
+    hits = cast_all_rays(surface.mesh.points, surface.mesh.faces, surface.resolution)
     check_against_plain(surface, hits, 0.5 - 1e-9)
 
 
@@ -174,7 +173,7 @@ def test_many_chunks_give_what_one_does(monkeypatch):
 
 def test_blocks_list_few_near_clusters():
     vertices, faces = large_and_loose(1000)
-    clusters = build_tree(smallest_caps(vertices, find_boundary(faces)))
+    clusters = build_tree(smallest_caps(vertices, meshes.boundary(faces)))
     expansions = classify_cells(clusters, RESOLUTION, 0.5).expansions
     assert len(expansions.near) > 0
     assert np.diff(expansions.start).max() <= MAX_NEAR

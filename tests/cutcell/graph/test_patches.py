@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutcell.geometry.edges import find_edges
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.graph.orientation.patches import find_patches, measure_faces
 from tests import meshes
 
@@ -11,7 +11,7 @@ from tests import meshes
 def inconsistent_faces(vertices, faces):
     """Tell which faces are to be flipped."""
     areas, _ = measure_faces(vertices, faces)
-    return find_patches(vertices, faces, find_edges(faces).partner, areas).flips
+    return find_patches(WeldedMesh.of(vertices, faces), areas).flips
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.4])

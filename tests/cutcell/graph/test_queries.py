@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.treecode.caps import cap_holes
 from cutcell.graph.winding.treecode.cells import BLOCK, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
@@ -38,7 +37,7 @@ SHAPES = {name: make for name, make in meshes.OPEN.items() if name != "degenerat
 
 def classified(vertices, faces):
     """Return the caps of a mesh, their clusters, and the classes of cells."""
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, meshes.boundary(faces))
     clusters = build_tree(caps)
     return caps, clusters, classify_cells(clusters, RESOLUTION, TAU)
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from cutcell import MeshError, ParameterError, TriangleMesh, winding_number
 from cutcell.geometry.weld import weld
-from cutcell.graph.winding.boundary import find_boundary
 from tests import meshes, naive
 
 
@@ -95,8 +94,8 @@ def test_split_vertices_are_welded():
 def test_boundary_of_a_closed_mesh_is_empty_and_of_a_hole_its_rim():
     vertices, faces = meshes.box()
     index = weld(vertices)[1]
-    assert len(find_boundary(index[faces]).loop) == 0
-    rim = find_boundary(index[faces[2:]])
+    assert len(meshes.boundary(index[faces]).loop) == 0
+    rim = meshes.boundary(index[faces[2:]])
     assert rim.start.tolist() == [0, 4]
     assert len(np.unique(rim.loop)) == 4
 
@@ -104,7 +103,7 @@ def test_boundary_of_a_closed_mesh_is_empty_and_of_a_hole_its_rim():
 def test_the_rim_of_copies_is_repeated():
     vertices, faces = meshes.box()
     opened, once = faces[2:], faces[[4]]
-    rim = find_boundary(np.concatenate([np.tile(opened, (5, 1)), once]))
+    rim = meshes.boundary(np.concatenate([np.tile(opened, (5, 1)), once]))
     assert len(rim.start) - 1 == 6
     points = np.random.default_rng(5).uniform(-0.2, 1.2, (50, 3))
     copies = np.concatenate([np.tile(opened, (5, 1)), once])

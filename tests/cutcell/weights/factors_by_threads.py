@@ -6,8 +6,8 @@ from threading import Thread
 
 import numpy as np
 
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.weights.rig_falloff.diffusion import Diffusion
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests.cutcell.weights.test_large_meshes import DEPTH, grid
 
 SIDE = 120
@@ -19,7 +19,7 @@ def resident() -> int:
     return int(re.findall(r"VmRSS:\s+(\d+) kB", status)[0])
 
 
-def factorise(surface: SurfaceOperators) -> None:
+def factorise(surface: WeldedMesh) -> None:
     """Let a thread make a `Diffusion`, and drop it in this one."""
     results = []
     depth = np.full(SIDE**2, DEPTH)
@@ -31,7 +31,7 @@ def factorise(surface: SurfaceOperators) -> None:
 def main() -> None:
     """Factorise 3 and then 20 times."""
     points, faces = grid(SIDE)
-    surface = SurfaceOperators.over(points, faces.astype(np.int32))
+    surface = WeldedMesh.of(points, faces.astype(np.int32))
     for _ in range(3):
         factorise(surface)
     before = resident()

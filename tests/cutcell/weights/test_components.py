@@ -6,6 +6,7 @@ import pytest
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.geodesics import Bones
 from cutcell.geometry.triangles import label_components
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.weights.rig_falloff.components import POINTS, bone_containment
 from cutcell.weights.rig_falloff.containment import (
     RIGID,
@@ -15,7 +16,6 @@ from cutcell.weights.rig_falloff.containment import (
     ramp,
 )
 from cutcell.weights.rig_falloff.rigid_accessories import attach_accessories
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests import meshes
 from tests.bars import grid_box
 
@@ -38,8 +38,9 @@ def test_bones_are_contained_where_the_winding_number_says(name):
     rng = np.random.default_rng(0)
     start, end = rng.random((2, 40, 3))
     bones = Bones(start, end, np.arange(40, dtype=np.int32))
-    component = np.zeros(len(vertices), np.int32)
-    contained = bone_containment(vertices, faces, component, bones)[0]
+    mesh = WeldedMesh.of(vertices, faces)
+    mesh.__dict__["component"] = np.zeros(len(vertices), np.int32)  # all are one
+    contained = bone_containment(mesh, bones)[0]
     along = (np.arange(POINTS) + 0.5) / POINTS
     points = start[:, None] + along[:, None] * (end - start)[:, None]
     inside = winding_number(TriangleMesh(vertices, faces), points.reshape(-1, 3)) > 0.5
@@ -53,7 +54,7 @@ def test_bones_are_contained_where_the_winding_number_says(name):
 def test_points_on_edges_are_counted_once():
     vertices, faces = meshes.box()  # its diagonals meet the axis of the bone
     bones = Bones(np.array([[0.5, 0.5, 0.3]]), np.array([[0.5, 0.5, 0.7]]), np.zeros(1, np.int32))
-    contained = bone_containment(vertices, faces, np.zeros(8, int), bones)
+    contained = bone_containment(WeldedMesh.of(vertices, faces), bones)
     assert contained[0, 0] == pytest.approx(1)
 
 
@@ -115,12 +116,12 @@ def test_a_body_in_patches_has_no_accessories():
     soup = vertices[faces].reshape(-1, 3) + np.repeat(np.arange(len(faces)) * 1e-3, 3)[:, None]
     triangles = np.arange(len(soup)).reshape(-1, 3)
     graph = build_graph(TriangleMesh(soup, triangles), 16, connectivity="any")
-    surface = SurfaceOperators.of(graph)
-    containment = np.zeros((int(surface.component.max()) + 1, 2))
+    surface = graph.mesh
+    containment = np.zeros((len(surface.longest_sides), 2))
     containment[0, 0] = 1
     weights = np.random.default_rng(0).random((len(surface.points), 2))
     independent = np.zeros(len(containment), bool)
-    assert attach_accessories(graph, surface, containment, weights, independent) is weights
+    assert attach_accessories(graph, containment, weights, independent) is weights
 
 
 def test_a_lone_component_has_no_penalty():
@@ -131,7 +132,7 @@ def test_a_lone_component_has_no_penalty():
 def test_a_component_follows_the_joint_that_nearly_all_of_it_follows():
     one, two = grid_box(8), grid_box(8)
     vertices, faces = joined(one, (two[0] + [0, 1, 0], two[1]))
-    surface = SurfaceOperators.over(vertices, faces.astype(np.int32))
+    surface = WeldedMesh.of(vertices, faces.astype(np.int32))
     weights = np.tile([0.6, 0.4], (len(vertices), 1))
     weights[5] = 0.4, 0.6
     followed = make_rigid(surface, weights, np.array([False, True]))
@@ -192,7 +193,7 @@ def test_no_component_is_of_two_joints():
     rig = head_with_eyes()
     joints = np.concatenate([rig.skeleton.joints, rig.skeleton.joints[2:3] + 0.01])
     graph = build_graph(rig.mesh, 16)
-    surface = SurfaceOperators.of(graph)
+    surface = graph.mesh
     skeleton = Skeleton(joints, [-1, 0, 1, 1, 1])
     place = graph.lattice.to_unit(joints)
     bones = Bones(place, place, np.arange(5, dtype=np.int32))

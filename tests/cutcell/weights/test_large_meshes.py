@@ -9,9 +9,9 @@ import pytest
 import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.geodesics.distances import bone_distances
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.weights.rig_falloff import diffusion
 from cutcell.weights.rig_falloff.diffusion import MANY, Diffusion
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests.bars import grid_box
 from tests.conftest import ROOT
 
@@ -69,7 +69,7 @@ def non_manifold():
 
 def spread(points, faces):
     """Spread the weights of three joints, with steps between them."""
-    surface = SurfaceOperators.over(points, np.asarray(faces, np.int32))
+    surface = WeldedMesh.of(points, np.asarray(faces, np.int32))
     known = np.eye(3)[np.clip(points[:, 0] * 3, 0, 2).astype(int)]
     diffused = Diffusion.over(surface, np.full(len(points), DEPTH), 64)
     return diffused.spread(known), len(diffused.levels)
@@ -103,7 +103,7 @@ def test_progress_can_stop_it():
 
     points, faces = grid(230)
     assert len(points) > MANY
-    surface = SurfaceOperators.over(points, faces.astype(np.int32))
+    surface = WeldedMesh.of(points, faces.astype(np.int32))
     diffused = Diffusion.over(surface, np.full(len(points), DEPTH), 64)
     with pytest.raises(cutcell.Cancelled):
         diffused.spread(np.eye(9)[(points[:, 0] * 9).astype(int)], stop)

@@ -6,10 +6,10 @@ import pytest
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh, bind
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
+from cutcell.geometry.welded import WeldedMesh
 from cutcell.weights.rig_falloff import division
 from cutcell.weights.rig_falloff.diffusion import SHARPNESS, Diffusion
 from cutcell.weights.rig_falloff.division import FACING_LEAST, _facing
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from cutcell_lab.baselines.compare import compare
 from cutcell_lab.metrics import deformation_error, vertex_shares, weight_l1
 from tests import meshes
@@ -69,13 +69,13 @@ def test_diffusion_is_the_solution_of_its_equation():
     screening = SHARPNESS * vertex_areas(points, faces) / depth**2
     system = cotangent_laplacian(points, faces).toarray() + np.diag(screening)
     expected = np.linalg.solve(system, screening[:, None] * weights)
-    result = Diffusion.over(SurfaceOperators.over(points, faces), depth, 64).spread(weights)
+    result = Diffusion.over(WeldedMesh.of(points, faces), depth, 64).spread(weights)
     np.testing.assert_allclose(result, expected, atol=1e-12)
 
 
 def test_a_tiny_face_far_from_all_bones_does_not_make_the_equation_singular():
     points, faces = np.array([[0, 0, 0], [1e-9, 0, 0], [0, 1e-9, 0]]), np.array([[0, 1, 2]])
-    surface = SurfaceOperators.over(points, faces.astype(np.int32))
+    surface = WeldedMesh.of(points, faces.astype(np.int32))
     spread = Diffusion.over(surface, np.full(3, 1e3), 64).spread(np.eye(2)[[0, 0, 1]])
     np.testing.assert_allclose(spread, [[0.75, 0.25]] * 3)
 

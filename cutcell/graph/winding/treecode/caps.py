@@ -13,16 +13,40 @@ cancel, and only loops of those that are left get fans.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ....geometry.boundary import Boundary, boundary_of
 from ....geometry.triangles import areas
 from ....geometry.weld import weld
 from ....runtime.compiled import compiled
-from ..boundary import Boundary, Caps, boundary_of
 
 GAP = 3e-3
 """Rim vertices this near each other are merged, also in chains."""
+
+
+class Caps(NamedTuple):
+    """A fan of triangles for each of some loops that sum to the boundary.
+
+    Parameters
+    ----------
+    vertices : array, shape (n + k, 3)
+        The mesh's, then the middles of those k loops that have more than four edges.
+    faces : array, shape (t, 3), int32
+        Of all fans. Together with the mesh's own they make a closed surface.
+    loop, start : arrays, shapes (e,) and (l + 1,), int64
+        The loops, as of a `Boundary`.
+    apex : array, shape (l,), int64
+        The vertex that the triangles of a fan share: of a short loop its first.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    loop: NDArray[np.int64]
+    start: NDArray[np.int64]
+    apex: NDArray[np.int64]
 
 
 def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:

@@ -34,8 +34,8 @@ from numpy.typing import NDArray
 from ....geometry.triangles import areas
 from ....geometry.vectors import between, dot
 from ....runtime.compiled import compiled
-from ..boundary import Caps
 from . import multipole
+from .caps import Caps
 
 ROOT = 1
 """The index of the cluster of all caps."""

@@ -53,7 +53,7 @@ class TreecodeWindingNumbers:
             np.append(0.0, np.cumsum(along.sign, dtype=np.float64)) for along in hits
         ]
         self._hits = hits
-        caps = smallest_caps(surface.vertices, surface.boundary)
+        caps = smallest_caps(surface.mesh.points, surface.mesh.boundary)
         report(0.1)
         self._cap_hits = cast_all_rays(
             caps.vertices, caps.faces, surface.resolution, share_of(report, 0.1, 0.4)
@@ -66,7 +66,7 @@ class TreecodeWindingNumbers:
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """Return which lattice points may be inside before a ray's first hit or beyond its last."""
         resolution, coarse = self._surface.resolution, self._classes.coarse
-        if self._surface.is_closed and self._threshold > 0:
+        if self._surface.mesh.is_closed and self._threshold > 0:
             return np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
         may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
         first = BLOCK * may_be_inside.argmax(axis=2)
@@ -86,7 +86,7 @@ class TreecodeWindingNumbers:
         """
         axis, ray, gap = segments.axis, segments.ray, segments.gap
         start, crossings = self._hits[axis].start, self._crossings[axis]
-        if self._surface.is_closed:
+        if self._surface.mesh.is_closed:
             return crossings[start[1:]].take(ray) - crossings.take(gap)
         caps = self._cap_hits[axis]
         w, row = _by_class(
@@ -113,8 +113,8 @@ class TreecodeWindingNumbers:
     def _boundary_angles(self, axis: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the winding numbers at points (q, 3) less the crossings ahead, exactly."""
         order = list(AXES[axis])
-        vertices = np.ascontiguousarray(self._surface.vertices[:, order])
-        angles = boundary_angles(vertices, self._surface.boundary, points[:, order])
+        vertices = np.ascontiguousarray(self._surface.mesh.points[:, order])
+        angles = boundary_angles(vertices, self._surface.mesh.boundary, points[:, order])
         return -angles if axis == 1 else angles  # (x, z, y) is left-handed
 
 

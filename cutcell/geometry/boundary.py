@@ -1,4 +1,4 @@
-"""The boundary chain of a mesh, the edges with signed incidence, as closed loops; and its caps."""
+"""The boundary chain of a mesh, the edges with signed incidence, as closed loops."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.edges import find_edges
-from ...runtime.compiled import compiled
+from ..runtime.compiled import compiled
 
 
 class Boundary(NamedTuple):
@@ -34,36 +33,8 @@ class Boundary(NamedTuple):
         return following
 
 
-class Caps(NamedTuple):
-    """A fan of triangles for each of some loops that sum to the boundary.
-
-    Parameters
-    ----------
-    vertices : array, shape (n + k, 3)
-        The mesh's, then the middles of those k loops that have more than four edges.
-    faces : array, shape (t, 3), int32
-        Of all fans. Together with the mesh's own they make a closed surface.
-    loop, start : arrays, shapes (e,) and (l + 1,), int64
-        The loops, as of a `Boundary`.
-    apex : array, shape (l,), int64
-        The vertex that the triangles of a fan share: of a short loop its first.
-    """
-
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int32]
-    loop: NDArray[np.int64]
-    start: NDArray[np.int64]
-    apex: NDArray[np.int64]
-
-
-def find_boundary(faces: NDArray[np.int32]) -> Boundary:
-    """Find the boundary of welded faces, shape (m, 3)."""
-    edges, incidence, _ = find_edges(faces)
-    return boundary_of(edges, incidence)
-
-
 def boundary_of(edges: NDArray[np.int32], incidence: NDArray[np.int32]) -> Boundary:
-    """Assemble the boundary from edges and their signed incidence, see `geometry.edges`."""
+    """Assemble the boundary from edges (e, 2) and their signed incidence, see `MeshEdges`."""
     is_open = incidence != 0
     if not is_open.any():
         return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64))
