@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..graph import INTERIOR, CutCellGraph
+from ..graph.winding.exact import winding_numbers_of
 from ..rig.deform_joints.conventions import kinds_by_name
 from ..rig.names import words
 from ..runtime.display import count, share
@@ -93,7 +94,7 @@ def _depths(graph: CutCellGraph, places: NDArray[np.intp]) -> NDArray[np.float64
     chosen = places[::step]
     points, normals = graph.mesh.points, graph.mesh.normals[chosen]
     below = points[chosen, None] - DEPTHS[:, None] / graph.lattice.resolution * normals[:, None]
-    numbers = graph.winding_numbers.at(below.reshape(-1, 3))
+    numbers = winding_numbers_of(graph.mesh, below.reshape(-1, 3))
     inside = numbers.reshape(len(chosen), -1) >= 0.5
     deep = np.cumprod(inside, axis=1).sum(axis=1)
     depth = np.concatenate([[0], DEPTHS])[deep]

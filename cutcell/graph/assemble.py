@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.line_hits import AXES
 from ..geometry.vectors import between, length
 from ..runtime.compiled import no_refcount
 from ..runtime.threads import in_threads
@@ -14,7 +15,7 @@ from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, fill_edges, lattice_steps
 from .interior import interior_points
 from .memory import check_nodes
-from .rays import AXES, RayHits
+from .rays import RayHits
 from .segments import NONE, InsideIntervals
 from .surface import Surface
 

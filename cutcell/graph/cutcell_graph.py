@@ -16,7 +16,6 @@ from .fingerprint import Fingerprint
 from .interior import InteriorPoints
 from .lattice import Lattice
 from .neighbours import Adjacency, list_neighbours
-from .winding.exact import WindingNumbers
 
 MESH, INTERIOR, SURFACE = 0, 1, 2
 """Kinds of nodes (mesh vertices, lattice points inside, ray hits on the surface) and of edges (of
@@ -127,11 +126,6 @@ class CutCellGraph(Summarized):
     def adjacency(self) -> Adjacency:
         """Neighbours of each node, see `list_neighbours`."""
         return list_neighbours(self.edges, self.lengths, len(self.nodes))
-
-    @cached_property
-    def winding_numbers(self) -> WindingNumbers:
-        """Winding numbers of the graph's oriented mesh."""
-        return WindingNumbers(self.mesh)
 
     @cached_property
     def connected(self) -> NDArray[np.bool_]:

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
+from ..geometry.line_hits import AXES
 from ..geometry.triangles import normals
-from .rays import AXES, RayHits, points_on_rays
+from .rays import RayHits, points_on_rays
 
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int32]

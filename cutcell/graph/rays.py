@@ -1,16 +1,7 @@
 """All hits of axis-aligned rays on a mesh (paper section 3.1, algorithm 1).
 
 Casting all rays of an axis amounts to rasterising the triangles seen along it: for each triangle,
-visit the lattice columns inside its projection. A column line u = const meets two edges of the
-triangle or none, and the ray at height v hits the triangle if v lies between these two. The height
-of an edge on a column line is always computed from its left end, so the two triangles that share
-the edge get the same number to the last bit. Whatever rounding does, a ray therefore leaves a
-closed surface as often as it enters it.
-
-Rays exactly through an edge or a vertex are treated by symbolic perturbation: the ray is moved by
-infinitesimal amounts, far less along u than along v. A vertex on the column line is taken as left
-of it, and an edge at exactly the ray's height as below it. In all three families of rays u comes
-before v in the order x, y, z, so they are perturbed consistently.
+visit the lattice columns inside its projection, see `geometry.line_hits`.
 """
 
 from __future__ import annotations
@@ -20,13 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.line_hits import AXES, FLIP, column_span, height_between
 from ..geometry.vectors import triangle_normal
 from ..runtime.compiled import compiled, copy_to
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
-
-AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
-"""For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
 CONTACT = 1e-9
 """Distance of two faces that touch, at most: above rounding."""
@@ -65,8 +54,7 @@ def cast_rays(
     Shapes: vertices (n, 3), faces (m, 3).
     """
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
-    flip = -1 if axis == 1 else 1  # x cross z points along -y
-    counts, position, triangle, sign = _rasterise(projected, faces, resolution, flip)
+    counts, position, triangle, sign = _rasterise(projected, faces, resolution, FLIP[axis])
     start = np.append(0, np.cumsum(counts))
     for ray in np.flatnonzero(counts > MANY_HITS):
         hits = slice(start[ray], start[ray + 1])
@@ -200,49 +188,6 @@ def first_at_least(coordinate, resolution):
     while (i + 0.5) / resolution < coordinate:
         i += 1
     return i
-
-
-@compiled
-def column_span(vertices, faces, f, pu):
-    """Intersect the column line u = pu with the triangle f.
-
-    Returns the two ends of the intersection as (v, along), lower v first, and the sign of the
-    hits on it: +1 if the triangle is counter-clockwise in the (u, v) plane, so that rays leave
-    through it, else -1. If the line misses the triangle, the two ends are equal.
-    """
-    right_v = left_v = right_a = left_a = 0.0
-    for k in range(3):
-        a, b = faces[f, k], faces[f, (k + 1) % 3]
-        a_left = vertices[a, 0] <= pu
-        if a_left == (vertices[b, 0] <= pu):
-            continue
-        if a_left:
-            right_v, right_a = edge_height(vertices, a, b, pu)
-        else:
-            left_v, left_a = edge_height(vertices, b, a, pu)
-    if right_v <= left_v:
-        return right_v, right_a, left_v, left_a, 1
-    return left_v, left_a, right_v, right_a, -1
-
-
-@compiled(inline="always")
-def edge_height(vertices, a, b, pu):
-    """Return v and the third coordinate of an edge at u = pu; a is its left end.
-
-    At the left end itself the result is exact.
-    """
-    width = vertices[b, 0] - vertices[a, 0]
-    step = pu - vertices[a, 0]
-    v = vertices[a, 1] + step * (vertices[b, 1] - vertices[a, 1]) / width
-    along = vertices[a, 2] + step * (vertices[b, 2] - vertices[a, 2]) / width
-    return v, along
-
-
-@compiled(inline="always")
-def height_between(low_v, low_a, high_v, high_a, pv):
-    """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
-    along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
-    return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
 @compiled

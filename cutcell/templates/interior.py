@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from ..graph.cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
+from ..graph.winding.exact import winding_numbers_of
 
 MIN_DEPTH = 0.5
 """Depth of surface nodes, in lattice cells, so that paths have a cost."""
@@ -110,7 +111,7 @@ class Interior:
     def inward(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points (k, 3) with those that are not inside moved to a deep node nearby."""
         in_cube = points @ self.axes + self.origin
-        inside = self.graph.winding_numbers.at(in_cube) >= self.graph.winding_threshold
+        inside = winding_numbers_of(self.graph.mesh, in_cube) >= self.graph.winding_threshold
         inside &= self._skin.query(in_cube)[0] > AT_SKIN * self.cell
         moved = points.copy()
         deep = np.flatnonzero(self.depth > 0)

@@ -1,8 +1,8 @@
 """Whether the surface blocks the line of sight from a vertex on it to a point.
 
 The test is watertight: seen along the segment, two triangles that share an edge compute the same
-numbers for it to the last bit, as for the rays of the graph (`graph.rays`). Whatever rounding does,
-no segment passes between them.
+numbers for it to the last bit, as for the rays of the graph (`geometry.line_hits`). Whatever
+rounding does, no segment passes between them.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.graph.rays import column_span, height_between
+from cutcell.geometry.line_hits import AXES, column_span, height_between
 from cutcell.runtime.compiled import compiled
 from cutcell.runtime.threads import in_threads, parts
 
@@ -130,7 +130,7 @@ def _see_along(point, start, direction, axis, seen):
     """Shear space so that the segment runs from 0 to 1 along the third axis; writes seen (3,)."""
     seen[2] = (point[axis] - start[axis]) / direction[axis]
     for k in range(2):
-        across = (axis + 1 + k) % 3
+        across = AXES[axis][k]
         seen[k] = point[across] - start[across] - seen[2] * direction[across]
 
 

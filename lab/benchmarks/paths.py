@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.geodesics import PIECES, BoneDistances, TracedPath, trace_path
+from cutcell.graph.winding.exact import winding_numbers_of
 
 from .document import fill
 from .rigs import rig_paths
@@ -46,7 +47,7 @@ def outside_by(distances: BoneDistances, points: NDArray[np.float64]) -> NDArray
     """Measure how far points (q, 3) are outside of the body, in lattice cells; 0 inside."""
     graph = distances.graph
     away = np.zeros(len(points))
-    number = graph.winding_numbers.at(points)
+    number = winding_numbers_of(graph.mesh, points)
     out = np.flatnonzero(number < graph.winding_threshold)
     if len(out):
         surface = graph.nodes[: graph.first_point], graph.faces.astype(np.int64)

@@ -14,6 +14,7 @@ from cutcell.geodesics import BoneDistances
 from cutcell.geodesics.fallback import REACHED
 from cutcell.geometry.segments import closest_on_segment
 from cutcell.graph import INTERIOR
+from cutcell.graph.winding.exact import winding_numbers_of
 from cutcell.rig import Rig
 
 SAMPLES = 48
@@ -165,7 +166,7 @@ class Measured:
         steps = int(np.clip(np.ceil(length.max() * self.cells * STEPS), 2, MAX_STEPS))
         along = (np.arange(steps) + 0.5) / steps
         points = start[:, None] + along[:, None] * (end - start)[:, None]
-        number = graph.winding_numbers.at(points.reshape(-1, 3)).reshape(len(start), steps)
+        number = winding_numbers_of(graph.mesh, points.reshape(-1, 3)).reshape(len(start), steps)
         part: NDArray[np.float64] = (number < graph.winding_threshold).mean(axis=1)
         return part * length
 

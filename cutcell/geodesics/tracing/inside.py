@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...graph import CutCellGraph
 from ...graph.inside_edges import cells_inside
+from ...graph.winding.exact import winding_numbers_of
 from ..any_angle.contraction import Contraction
 
 SPACING = 0.5
@@ -42,7 +43,7 @@ class Inside:
             rest = np.flatnonzero(~inside)
             if len(rest):
                 around = (points[rest, None] + steps).reshape(-1, 3)
-                number = self._graph.winding_numbers.at(around).reshape(len(rest), -1)
+                number = winding_numbers_of(self._graph.mesh, around).reshape(len(rest), -1)
                 inside[rest] = (number >= self._graph.winding_threshold).any(axis=1)
         return inside
 

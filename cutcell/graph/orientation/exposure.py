@@ -1,9 +1,9 @@
 """Which side of a surface sees the outside, by ray casting (Takayama et al. 2014).
 
 From points on the surface, rays are cast in both directions of lines spread evenly over the sphere.
-A ray that hits no other face sees the outside. Rays are cast as in `graph/rays.py`: the mesh is
-rotated until the lines are vertical, and hits are decided without tolerances, so no ray passes
-between two adjacent faces.
+A ray that hits no other face sees the outside. The mesh is rotated until
+the lines are vertical, and hits are decided without tolerances (`geometry.line_hits`), so no ray
+passes between two adjacent faces.
 """
 
 from __future__ import annotations
@@ -11,11 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.line_hits import next_hits
 from ...geometry.triangles import areas, unit_normals
-from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads
-from ..rays import column_span, height_between
 
 LINES = 12
 SAMPLES = 2, 32
@@ -24,8 +23,6 @@ MAX_SAMPLES = 4096
 """On all patches together, unless there are more than half as many patches."""
 COINCIDENT = 1e-9
 """A face this close to a point does not hide it: it is the other side of a doubled sheet."""
-CELLS_EACH = 4
-"""Cells for each point, of the grid that finds the points above and below a face."""
 SHRINK = 1.75
 """The unit cube, rotated about its middle, fits into itself if scaled down by this."""
 
@@ -126,47 +123,9 @@ def _escape(
     """Return for each point whether the rays upward and downward escape, shape (p, 2)."""
     is_free, left, face = np.ones((len(points), 2), np.bool_), np.arange(len(points)), 0
     while face < len(faces) and len(left):
-        columns = int(np.sqrt(CELLS_EACH * len(left))) + 1
-        u, v = (points[left, :2] * columns).astype(np.int64).T
-        column = u * columns + v
-        left = left[np.argsort(column, kind="stable")]
-        start = np.append(0, np.cumsum(np.bincount(column, minlength=columns * columns)))
-        free = is_free[left]
-        grid = start, columns
-        face = _hide(points[left], own_face[left], free, grid, vertices, faces, face)
-        is_free[left] = free
-        left = left[free.any(axis=1)]
+        hits, face = next_hits(vertices, faces, points[left], 2, face)
+        point = left[hits.line]
+        hides = (np.abs(hits.ahead) > COINCIDENT) & (hits.face != own_face[point])
+        is_free[point[hides], np.where(hits.ahead[hides] > 0, 0, 1)] = False
+        left = left[is_free[left].any(axis=1)]  # in a soup a few faces hide nearly all points
     return is_free
-
-
-@compiled
-def _hide(points, face_of, free, grid, vertices, faces, f):
-    """Mark the rays that faces from f on hide; stop where half of the points are hidden.
-
-    In a soup a few faces hide nearly all points. Returns the next face.
-    """
-    start, columns = grid
-    hidden = 0
-    while f < len(faces) and 2 * hidden <= len(points):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-        high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
-        low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-        high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
-        for i in range(int(low_u * columns), int(high_u * columns) + 1):
-            first = start[i * columns + int(low_v * columns)]
-            last = start[i * columns + int(high_v * columns) + 1]
-            for k in range(first, last):
-                pu, pv = points[k, 0], points[k, 1]
-                if face_of[k] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
-                    continue
-                if not (free[k, 0] or free[k, 1]):
-                    continue
-                span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
-                if span_low <= pv < span_high:
-                    away = height_between(span_low, low, span_high, high, pv) - points[k, 2]
-                    if abs(away) > COINCIDENT:
-                        free[k, 0 if away > 0 else 1] = False
-                        hidden += not (free[k, 0] or free[k, 1])
-        f += 1
-    return f

@@ -12,15 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import ParameterError
+from ...geometry.line_hits import AXES
 from ...method import check_resolution
 from ...rig import TriangleMesh
 from ...rig.checks import check_choice, check_integer, check_number
 from ..lattice import Lattice
 from ..libraries import CASTERS, fast_winding_numbers
-from ..rays import AXES, cast_rays, part_at_contacts, points_on_rays
+from ..rays import cast_rays, part_at_contacts, points_on_rays
 from ..segments import divide_rays
 from ..surface import prepare_surface
-from ..winding.exact import WindingNumbers
+from ..winding.exact import winding_numbers_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +160,7 @@ def slice_rays(
     )
     middle = segments.midpoints(shown)
     if winding == "exact":
-        at_middle = WindingNumbers(surface.mesh).at(middle)
+        at_middle = winding_numbers_of(surface.mesh, middle)
     else:
         at_middle = fast_winding_numbers(surface.mesh.points, surface.mesh.faces, middle)
     ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))

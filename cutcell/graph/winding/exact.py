@@ -19,15 +19,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ParameterError
-from ...geometry.sorting import sort_by_group
+from ...geometry.line_hits import edge_height, line_hits
 from ...geometry.welded import WeldedMesh
 from ...rig import TriangleMesh
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads, parts
-from ..rays import column_span, edge_height, height_between
 
-MAX_CELLS = 16
-"""Cells of the grid that a face is listed in, on average: those of a fan cover most of it."""
 INFINITESIMAL = 1e-150
 """Smaller than any distance, yet its product with one does not underflow."""
 TINY = 1e-100
@@ -66,60 +63,19 @@ def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]
         raise ParameterError(f"points must have the shape (q, 3), not {points.shape}")
     if not np.isfinite(points).all():
         raise ParameterError("points must be finite numbers")
-    return WindingNumbers(mesh.welded).at(mesh.cube.to_unit(points))
+    return winding_numbers_of(mesh.welded, mesh.cube.to_unit(points))
 
 
-class WindingNumbers:
-    """The winding numbers of a mesh, prepared for many calls of `at`."""
-
-    def __init__(self, mesh: WeldedMesh) -> None:
-        self._mesh = mesh
-        self._bins = _bin_faces(mesh.points, mesh.faces)
-
-    def at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the winding number at points (q, 3) of the unit cube, shape (q,)."""
-
-        def number_at(part: slice) -> NDArray[np.float64]:
-            mesh = self._mesh
-            ahead = _crossings_ahead(points[part], mesh.points, mesh.faces, *self._bins)
-            return ahead + boundary_angles(mesh.points, mesh.boundary, points[part])
-
-        return np.concatenate([np.empty(0), *in_threads(number_at, parts(len(points)))])
-
-
-def _bin_faces(vertices, faces):
-    """List for each cell of a grid over (x, y) the faces whose projection may touch it."""
-    cells = int(np.clip(np.sqrt(len(faces)), 1, 512))
-    corners = vertices[faces][:, :, :2]
-    extent = np.stack([corners.min(axis=1), corners.max(axis=1)])
-    while True:
-        low, high = np.clip((extent * cells).astype(np.int64), 0, cells - 1)
-        size = high - low + 1
-        count = size.prod(axis=1)
-        if count.sum() <= MAX_CELLS * len(faces):
-            break
-        cells //= 2  # a cell is then listed with as many of the faces that cover many
-    face = np.repeat(np.arange(len(faces), dtype=np.int32), count)
-    k = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
-    cell = (low[face, 0] + k // size[face, 1]) * cells + low[face, 1] + k % size[face, 1]
-    start, order = sort_by_group(cell, cells**2)
-    return cells, start, face[order]
-
-
-@compiled
-def _crossings_ahead(points, vertices, faces, cells, start, listed):
+def winding_numbers_of(mesh: WeldedMesh, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the winding numbers of a mesh at points (q, 3) of the unit cube, shape (q,)."""
     ahead = np.zeros(len(points))
-    for q in range(len(points)):
-        pu, pv, height = points[q, 0], points[q, 1], points[q, 2]
-        if 0 <= pu <= 1 and 0 <= pv <= 1:
-            cell = min(int(pu * cells), cells - 1) * cells + min(int(pv * cells), cells - 1)
-            for k in range(start[cell], start[cell + 1]):
-                low_v, low_a, high_v, high_a, side = column_span(vertices, faces, listed[k], pu)
-                if not low_v <= pv < high_v:
-                    continue
-                if height_between(low_v, low_a, high_v, high_a, pv) > height:
-                    ahead[q] += side
-    return ahead
+    for hits in line_hits(mesh.points, mesh.faces, points, axis=2):
+        ahead += np.bincount(hits.line, hits.sign * (hits.ahead > 0), len(points))
+    boundary = mesh.boundary
+    angles = in_threads(
+        lambda part: boundary_angles(mesh.points, boundary, points[part]), parts(len(points))
+    )
+    return ahead + np.concatenate([np.empty(0), *angles])
 
 
 @compiled

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from cutcell import MissingLibraryError, TriangleMesh
+from cutcell.geometry.line_hits import AXES
 from cutcell.geometry.weld import weld
 from cutcell.graph import libraries
-from cutcell.graph.rays import AXES, cast_all_rays, cast_rays
+from cutcell.graph.rays import cast_all_rays, cast_rays
 from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
-from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.graph.winding.exact import winding_numbers_of
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -128,8 +129,8 @@ def fast_intervals(surface, hits, tau):
 def both_runs(mesh, tau):
     """Return the intervals along each axis as sets: by exact winding numbers, and by libigl's."""
     surface, hits = prepared(*mesh, 24)
-    exact = WindingNumbers(surface.mesh)
-    plain = intervals(surface, hits, tau, exact.at)
+    exact = partial(winding_numbers_of, surface.mesh)
+    plain = intervals(surface, hits, tau, exact)
     pairs = zip(plain, fast_intervals(surface, hits, tau), strict=True)
     return [
         [set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in pair]

@@ -1,6 +1,7 @@
 """By the treecode, algorithm 1 keeps the segments that it keeps by exact winding numbers."""
 
 import tracemalloc
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from cutcell import TooLargeError, TriangleMesh
 from cutcell.graph.rays import cast_all_rays
 from cutcell.graph.segments import PointwiseWindingNumbers, inside_intervals
 from cutcell.graph.surface import prepare_surface
-from cutcell.graph.winding.exact import WindingNumbers, boundary_angles
+from cutcell.graph.winding.exact import boundary_angles, winding_numbers_of
 from cutcell.graph.winding.treecode.caps import smallest_caps
 from cutcell.graph.winding.treecode.cells import MAX_NEAR, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
@@ -90,7 +91,7 @@ def treecode_intervals(surface, hits, tau, report=lambda done: None):
 
 def check_against_plain(surface, hits, tau):
     """Compare the intervals with those by winding numbers at all midpoints."""
-    exact = PointwiseWindingNumbers(surface, WindingNumbers(surface.mesh).at)
+    exact = PointwiseWindingNumbers(surface, partial(winding_numbers_of, surface.mesh))
     expected = inside_intervals(hits, tau, exact, surface.resolution)
     for one, other in zip(treecode_intervals(surface, hits, tau), expected, strict=True):
         # Without length, the midpoint is on the surface, where either number is right.

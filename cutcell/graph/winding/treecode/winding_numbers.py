@@ -12,9 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ....geometry.line_hits import AXES
 from ....runtime.compiled import compiled
 from ....runtime.progress import Tell, share_of
-from ...rays import AXES, RayHits, cast_all_rays, in_space
+from ...rays import RayHits, cast_all_rays, in_space
 from ...segments import NONE, Segments
 from ...surface import Surface
 from ..exact import boundary_angles
