@@ -37,11 +37,11 @@ def graph(
     Counts nodes and edges (of the mesh, inside, on the surface), connected components,
     and the share of vertices that no bone reaches through the graph.
     """
-    from ..binding import binding_steps
+    from ..animation.falloff.context import Context, run
+    from ..binding.binding import binding_steps
     from ..io import load
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
-    from ..weights.context import Context, run
 
     how = given.chosen_method(options)
     loaded = load(rig, skeleton=skeleton)

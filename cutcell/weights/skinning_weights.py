@@ -7,6 +7,10 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.falloff.adjustments import Adjustments
+from ..animation.falloff.context import Context, Step, run
+from ..animation.falloff.pipeline import RIG_STEPS
+from ..animation.falloff.surface_operators import SurfaceOperators
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
@@ -14,12 +18,8 @@ from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
 from ..runtime.threads import in_threads, parts, threads
-from .adjustments import Adjustments
-from .context import Context, Step, run
 from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
-from .rig_falloff.pipeline import RIG_STEPS
-from .rig_falloff.surface_operators import SurfaceOperators
 
 
 def skinning_weights(

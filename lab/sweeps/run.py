@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cutcell.binding import Binding
-from cutcell.editing import Edits, bind
-from cutcell.editing.bind import bind_steps
-from cutcell.editing.bind import finished as finish
+from cutcell.animation.falloff.context import Context, run
+from cutcell.binding import Binding, bind
+from cutcell.binding.bind import bind_steps
+from cutcell.binding.bind import finished as finish
+from cutcell.editing import Edits
 from cutcell.errors import Cancelled, CutcellError
 from cutcell.geodesics.fallback import REACHED
 from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
@@ -24,7 +25,6 @@ from cutcell.rig.checks import check_choice
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
-from cutcell.weights.context import Context, run
 from cutcell.weights.warm_up import warm_up
 
 from ..metrics import deformation_error, precision_recall, weight_l1

@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 import cutcell
+from cutcell.animation.falloff.context import Context
 from cutcell.binding import Binding
+from cutcell.binding.bind import layer_context
 from cutcell.editing import Computed, Edits, Layer
-from cutcell.editing.bind import layer_context
 from cutcell.editing.layers import RigSources, apply_layers
 from cutcell.geodesics import BoneDistances
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.runtime.threads import cancellable
 from cutcell.weights import keep_strongest
-from cutcell.weights.context import Context
 
 CACHED = 4
 """Number of contents whose weights are remembered."""

@@ -10,14 +10,14 @@ import numpy as np
 from scipy.sparse import csr_array
 
 import cutcell
+from cutcell.animation.falloff.context import Context, run
 from cutcell.binding import Binding
+from cutcell.binding.bind import computed_steps
 from cutcell.editing import Computed
-from cutcell.editing.bind import computed_steps
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.runtime.threads import cancellable
-from cutcell.weights.context import Context, run
 
 graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
 """How long each graph took."""

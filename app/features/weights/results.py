@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 import cutcell
+from cutcell.animation.falloff.context import Context, run
 from cutcell.binding import Binding
+from cutcell.binding.warnings import with_warnings
 from cutcell.editing import Computed, Edits
-from cutcell.editing.binding_warnings import with_warnings
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
 from cutcell.graph.fingerprint import data_fingerprint
@@ -23,7 +24,6 @@ from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest
-from cutcell.weights.context import Context, run
 from cutcell.weights.skinning_weights import weight_steps
 from cutcell.weights.warm_up import is_compiled, warm_up
 

@@ -1,0 +1,113 @@
+"""The steps from a rig to its weights, and the record of a binding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..animation.falloff.context import Context, Step
+from ..geodesics import BoneDistances, bone_distances
+from ..graph import CutCellGraph, build_graph
+from ..method import Method
+from ..pose.stretch import Stretch, measure_stretch
+from ..rig import Rig
+from ..runtime.repr import Summarized
+from ..runtime.threads import submit
+from ..weights.skinning_weights import weight_steps
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Binding(Summarized):
+    """A bound rig: weights, and everything they came from.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        For the rig's own vertices, in their order.
+    graph : CutCellGraph
+    distances : BoneDistances
+        Distances from as many of each vertex's nearest joints as the falloff needs.
+    seconds : dict of str to float
+        Time taken by each stage: "graph", "distances", "weights".
+    warnings : tuple of str
+        User-facing warnings.
+    method : Method
+        The method of the weights.
+
+    Attributes
+    ----------
+    stretch : Stretch
+        How much of the surface stretches as joints turn, and where.
+    """
+
+    weights: NDArray[np.float64]
+    graph: CutCellGraph
+    distances: BoneDistances
+    seconds: dict[str, float]
+    warnings: tuple[str, ...]
+    method: Method
+
+    @cached_property
+    def stretch(self) -> Stretch:
+        """How much of the surface stretches as joints turn, and where."""
+        skeleton = self.distances.skeleton
+        assert skeleton is not None
+        return measure_stretch(self.graph, skeleton, self.weights)
+
+    @property
+    def _summary(self) -> dict[str, Any]:
+        vertices, joints = self.weights.shape
+        return {
+            "method": self.method.name,
+            "resolution": self.method.resolution,
+            "vertices": vertices,
+            "joints": joints,
+            "nodes": len(self.graph.nodes),
+            "edges": len(self.graph.edges),
+            "unreached_vertices": int(np.count_nonzero(self.distances.fallback)),
+            "seconds": round(sum(self.seconds.values()), 2),
+            "warnings": len(self.warnings),
+        }
+
+
+def binding_steps(
+    rig: Rig,
+    method: Method,
+    graph: CutCellGraph | None = None,
+    distances: BoneDistances | None = None,
+    nearest_joints: int | None = None,
+    within: float | None = None,
+) -> tuple[Step, ...]:
+    """List the steps from a rig to its weights: graph, distances, and those of the weights.
+
+    A given graph, or given distances, are taken instead of new ones. `nearest_joints` and `within`
+    are those of `bone_distances`.
+    """
+    if distances is not None:
+        graph = distances.graph
+
+    def build(context: Context) -> CutCellGraph:
+        return graph or build_graph(rig.mesh, method=method, progress=context.progress)
+
+    def measure(context: Context) -> BoneDistances:
+        # Another thread computes what the weights need of the surface.
+        surface = submit(context.operators) if method.falloff == "rig" else None
+        measured = distances or bone_distances(
+            context.graph,
+            rig.skeleton,
+            method=method,
+            nearest_joints=nearest_joints,
+            within=within,
+            allowed=rig.allowed,
+            progress=context.progress,
+        )
+        if surface is not None:
+            surface()
+        return measured
+
+    first = Step("graph", build, "graph"), Step("distances", measure, "distances")
+    return (*first, *weight_steps(method, rig.allowed))
