@@ -160,6 +160,31 @@ def test_packages_of_the_core_use_only_those_before_them():
     assert wrong == []
 
 
+def test_the_method_of_the_paper_reads_alone():
+    """Few modules choose between it and the method for animation; no other one knows the latter."""
+    choosing = {
+        ROOT / "cutcell" / name
+        for name in (
+            "geodesics/solver.py",
+            "geodesics/moved.py",
+            "geodesics/tracing/inside.py",
+            "weights/skinning_weights.py",
+        )
+    }
+    stages = [
+        path
+        for part in ("graph", "bones", "geodesics", "weights")
+        for path in (ROOT / "cutcell" / part).rglob("*.py")
+    ]
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {name}"
+        for path in sorted(set(stages) - choosing)
+        for name, line in imports_of(path)
+        if name.startswith("cutcell.animation")
+    ]
+    assert wrong == []
+
+
 def test_reading_gltf_needs_no_writing():
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"

@@ -3,7 +3,7 @@
 import shlex
 from dataclasses import dataclass
 
-from cutcell.animation.bone_extents.skins import method_per_character
+from cutcell.binding.resolution import method_per_character
 from cutcell.cli.options import METHOD_OPTIONS
 from cutcell.editing import Edits
 from cutcell.method import Method

@@ -1,27 +1,17 @@
-"""All steps of a binding in one call."""
+"""All stages of a binding in one call."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..animation.bone_extents.skins import method_per_character
-from ..animation.falloff.adjustments import Adjustments
-from ..animation.falloff.context import Context, Step, run
-from ..editing.edited import adjustments_of, edited_rig, joints_measured
+from ..editing.edited import edited_rig
 from ..editing.edits import Edits
-from ..editing.layers import RigSources, apply_layers, vertices_of
-from ..editing.layers.contents import Computed
-from ..editing.layers.layer import Layer
 from ..editing.refine import RefineOptions, refinement
 from ..errors import SkeletonError
-from ..geodesics import BoneDistances
-from ..graph import CutCellGraph, build_graph
-from ..graph.fingerprint import differences, distance_fingerprint, graph_fingerprint, require_same
+from ..graph import CutCellGraph
+from ..graph.fingerprint import graph_fingerprint, require_same
 from ..graph.lattice import Lattice
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
@@ -31,8 +21,9 @@ from ..runtime.memory import check_matrix
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import cancellable
 from ..weights.warm_up import is_compiled, warm_up
-from .binding import Binding, binding_steps
-from .warnings import with_warnings
+from .binding import Binding
+from .resolution import method_per_character
+from .stages import bind_edited
 
 COPIES = 4
 """Maximum number of matrices of vertices and joints, distances and weights, at a time."""
@@ -111,92 +102,19 @@ def bind(
         method = method_per_character(rig, method, graph)
     if graph is not None:
         require_same("graph", graph.fingerprint, graph_fingerprint(rig.mesh, method))
-    steps = bind_steps(
-        rig, method, edits, graph, smoothing=smoothing, symmetric=symmetric, locked=locked
-    )
+    lowest = refinement(rig, smoothing, symmetric, locked)
     if not is_compiled():
         progress("compile", 0.0)
         warm_up()
         progress("compile", 1.0)
-
-    def work(report: Progress) -> Binding:
-        context = run(steps, Context(method, rig.allowed, report))
-        return finished(rig, context, edits)
-
-    return cancellable(work, progress, "graph" if graph is None else "distances")
-
-
-def bind_steps(
-    rig: Rig,
-    method: Method,
-    edits: Edits,
-    graph: CutCellGraph | None = None,
-    distances: BoneDistances | None = None,
-    after: Callable[[Layer, NDArray[np.float64]], None] = lambda layer, weights: None,
-    **refinements: Unpack[RefineOptions],
-) -> list[Step]:
-    """List the steps of `bind` for a rig that is edited already; check the refinements.
-
-    A given graph, or given distances, are taken instead of new ones. See `apply_layers` for
-    `after`.
-    """
-    layers = edits.stack(refinement(rig, **refinements))
-
-    def apply(context: Context) -> NDArray[np.float64]:
-        def computed(layer: Layer) -> NDArray[np.float64]:
-            return layer_context(rig, context, edits.reach, layer).weights
-
-        sources = RigSources(rig, method, context.graph, context.operators, computed)
-        return apply_layers(context.weights, layers, sources, after)
-
-    steps = computed_steps(rig, method, edits.reach, graph, distances)
-    return [*steps, *([Step("layers", apply)] if layers else [])]
+    return cancellable(
+        lambda report: bind_edited(rig, method, edits, lowest, graph, progress=report),
+        progress,
+        "graph" if graph is None else "distances",
+    )
 
 
-def computed_steps(
-    rig: Rig,
-    method: Method,
-    content: Computed,
-    graph: CutCellGraph | None = None,
-    distances: BoneDistances | None = None,
-    vertices: NDArray[np.intp] | None = None,
-) -> list[Step]:
-    """List the steps from a rig to computed weights, with the reach of joints of a content.
-
-    See `adjustments_of` for the vertices.
-    """
-
-    def adjust(context: Context) -> Adjustments | None:
-        context.report(0.0)
-        return adjustments_of(rig, context.graph, content, vertices)
-
-    nearest, within = joints_measured(content, method)
-    build, measure, *weigh = binding_steps(rig, method, graph, distances, nearest, within)
-    return [build, measure, Step("adjustments", adjust, "adjustments"), *weigh]
-
-
-def layer_context(rig: Rig, context: Context, reach: Computed, layer: Layer) -> Context:
-    """Compute the weights of a layer whose content is computed; return all results.
-
-    The context is that of the other weights, which were computed with the reach of joints of
-    `reach`; its graph and its distances are used where they fit.
-    """
-    content, graph, distances = layer.content, context.graph, None
-    assert isinstance(content, Computed)
-    method = content.method(context.method)
-    vertices = vertices_of(layer.mask, RigSources(rig, method, graph).component)
-    if graph.fingerprint != graph_fingerprint(rig.mesh, method):
-        graph = build_graph(rig.mesh, method=method, progress=context.progress)
-    else:
-        expected = distance_fingerprint(rig.skeleton, method, rig.allowed)
-        is_same = not differences(context.distances.fingerprint, expected)
-        if is_same and joints_measured(content, method) == joints_measured(reach, context.method):
-            distances = context.distances
-    steps = computed_steps(rig, method, content, graph, distances, vertices)
-    return run(steps, Context(method, rig.allowed, context.progress, scaled=context.scaled))
-
-
-def weighed_again(
+def limit_influences(
     rig: Rig,
     binding: Binding,
     edits: Edits,
@@ -205,16 +123,10 @@ def weighed_again(
 ) -> Binding:
     """Compute the weights of a binding again with at most the given number of influences."""
     method = replace(binding.method, max_influences=max_influences)
-    steps = bind_steps(rig, method, edits, distances=binding.distances, **refinements)
-    context = Context(method, rig.allowed, seconds=dict(binding.seconds))
-    return finished(rig, run(steps, context), edits)
-
-
-def finished(rig: Rig, context: Context, edits: Edits) -> Binding:
-    """Return the binding that the steps have computed, with its warnings."""
-    context.report(1.0)
-    results = context.weights, context.graph, context.distances, context.seconds
-    return with_warnings(rig, Binding(*results, (), context.method), edits)
+    lowest = refinement(rig, **refinements)
+    limited = bind_edited(rig, method, edits, lowest, distances=binding.distances)
+    spent = limited.seconds["weights"] + binding.seconds.get("weights", 0.0)
+    return replace(limited, seconds={**binding.seconds, "weights": spent})
 
 
 def _check(rig: Rig, method: Method) -> None:

@@ -1,4 +1,4 @@
-"""The steps from a rig to its weights, and the record of a binding."""
+"""The record of a binding."""
 
 from __future__ import annotations
 
@@ -9,15 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..animation.falloff.context import Context, Step
-from ..geodesics import BoneDistances, bone_distances
-from ..graph import CutCellGraph, build_graph
+from ..geodesics import BoneDistances
+from ..graph import CutCellGraph
 from ..method import Method
 from ..pose.stretch import Stretch, measure_stretch
-from ..rig import Rig
 from ..runtime.repr import Summarized
-from ..runtime.threads import submit
-from ..weights.skinning_weights import weight_steps
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -72,42 +68,3 @@ class Binding(Summarized):
             "seconds": round(sum(self.seconds.values()), 2),
             "warnings": len(self.warnings),
         }
-
-
-def binding_steps(
-    rig: Rig,
-    method: Method,
-    graph: CutCellGraph | None = None,
-    distances: BoneDistances | None = None,
-    nearest_joints: int | None = None,
-    within: float | None = None,
-) -> tuple[Step, ...]:
-    """List the steps from a rig to its weights: graph, distances, and those of the weights.
-
-    A given graph, or given distances, are taken instead of new ones. `nearest_joints` and `within`
-    are those of `bone_distances`.
-    """
-    if distances is not None:
-        graph = distances.graph
-
-    def build(context: Context) -> CutCellGraph:
-        return graph or build_graph(rig.mesh, method=method, progress=context.progress)
-
-    def measure(context: Context) -> BoneDistances:
-        # Another thread computes what the weights need of the surface.
-        surface = submit(context.operators) if method.falloff == "rig" else None
-        measured = distances or bone_distances(
-            context.graph,
-            rig.skeleton,
-            method=method,
-            nearest_joints=nearest_joints,
-            within=within,
-            allowed=rig.allowed,
-            progress=context.progress,
-        )
-        if surface is not None:
-            surface()
-        return measured
-
-    first = Step("graph", build, "graph"), Step("distances", measure, "distances")
-    return (*first, *weight_steps(method, rig.allowed))

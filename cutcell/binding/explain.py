@@ -8,9 +8,8 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..animation.bone_extents.skins import method_per_character
-from ..animation.falloff.context import Context, Step, run
-from ..editing.edited import edited_rig, joints_measured
+from ..animation.falloff.pipeline import RigFalloff
+from ..editing.edited import adjustments_of, edited_rig, joints_measured
 from ..editing.edits import Edits
 from ..editing.layers.layer import Layer
 from ..editing.locks import joint_index
@@ -23,20 +22,12 @@ from ..rig import Rig
 from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
-from .absence import absence_of, factors_of, rank_of
-from .bind import bind_steps
+from ..weights.skinning_weights import weight_steps
+from .absence import Trace
+from .binding import Binding
+from .resolution import method_per_character
+from .stages import bind_layer, measure, with_layers
 
-STEPS = {
-    "falloff": "shares by distance",
-    "spread": "spread over skin",
-    "rigid": "rigid components",
-    "tail": "tail subtracted",
-    "storable": "storable in file",
-    "limit": "limited",
-    "normalise": "normalised",
-}
-"""Labels of the steps from distances to weights. A binding has some of them, and then a step for
-each layer that changes the vertex, by its title."""
 SOME = 1e-4
 """Joints that no step gives as much are left out, unless the file has weight of them."""
 
@@ -196,58 +187,72 @@ def explain(
         measured = joints_measured(edits.reach, method)
         expected |= distance_fingerprint(rig.skeleton, method, rig.allowed, *measured)
         require_same("distances", distances.fingerprint, expected)
-    context = Context(method, rig.allowed, progress)
-    rows: dict[str, NDArray[np.float64]] = {}
-
-    def keep(step: Step) -> None:
-        if step.name not in STEPS:
-            return
-        row = vertex if context.is_per_vertex else context.graph.vertex_node[vertex]
-        weights = context.weights[row].copy()
-        if step.name == "normalise":
-            rows["limit"] = np.where(weights > 0, next(reversed(rows.values())), 0.0)
-        rows[step.name] = weights
-
-    def keep_layer(layer: Layer, weights: NDArray[np.float64]) -> None:
-        row = weights[vertex].copy()
-        if np.array_equal(row, next(reversed(rows.values()))):
-            return
-        same = sum(name.split(" (")[0] == layer.title for name in rows)
-        rows[layer.title if not same else f"{layer.title} ({same + 1})"] = row
-
-    run(bind_steps(rig, method, edits, distances=distances, after=keep_layer), context, keep)
-    last = next(reversed(rows.values()))
-    most = np.max(list(rows.values()), axis=0)
+    else:
+        distances = measure(rig, method, edits.reach, {}, progress=progress)
+    trace = _traced(rig, vertex, method, edits, distances, progress)
+    last, most = trace.last, np.max(list(trace.rows.values()), axis=0)
     own = None if rig.weights is None else rig.weights[vertex]
     is_listed = (most > SOME) | (False if own is None else own > SOME)
     if joint is not None:
         is_listed[joint_index(rig.skeleton, joint)] = True
     listed = np.flatnonzero(is_listed)
     joints = listed[np.argsort(-last[listed], kind="stable")].tolist()
-    shares = tuple(_share(rig, vertex, joint, context, rows) for joint in joints)
+    shares = tuple(_share(rig, trace, joint) for joint in joints)
     progress("weights", 1.0)
-    reason = int(context.distances.fallback[vertex])
+    reason = int(distances.fallback[vertex])
     why = "" if reason == REACHED else FALLBACK_REASONS[reason]
     return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, shares)
 
 
-def _share(
-    rig: Rig, vertex: int, joint: int, context: Context, rows: dict[str, NDArray[np.float64]]
-) -> JointShare:
-    distances = context.distances
-    unit, bones = context.graph.lattice.size, distances.bones
+def _traced(
+    rig: Rig,
+    vertex: int,
+    method: Method,
+    edits: Edits,
+    distances: BoneDistances,
+    progress: Progress,
+) -> Trace:
+    """Compute all weights, and keep those of a vertex after each step and each layer."""
+    graph, reach = distances.graph, edits.reach
+    adjustments = adjustments_of(rig, graph, reach)
+    falloff = RigFalloff.over(distances, adjustments) if method.falloff == "rig" else None
+    trace = Trace(vertex, method, distances, rig.allowed, adjustments, falloff)
+    rows = trace.rows
+    for step in weight_steps(distances, method, rig.allowed, adjustments, falloff, progress):
+        row = step.weights[graph.vertex_node[vertex] if step.welded else vertex].copy()
+        if step.name == "normalise":
+            rows["limit"] = np.where(row > 0, trace.last, 0.0)
+        rows[step.name] = row
+
+    def keep_layer(layer: Layer, weights: NDArray[np.float64]) -> None:
+        if np.array_equal(weights[vertex], trace.last):
+            return
+        same = sum(name.split(" (")[0] == layer.title for name in rows)
+        rows[layer.title if not same else f"{layer.title} ({same + 1})"] = weights[vertex].copy()
+
+    base = Binding(step.weights, graph, distances, {}, (), method)
+
+    def computed(layer: Layer) -> NDArray[np.float64]:
+        return bind_layer(rig, base, reach, layer, progress).weights
+
+    with_layers(rig, base, edits.stack(), computed, keep_layer)
+    return trace
+
+
+def _share(rig: Rig, trace: Trace, joint: int) -> JointShare:
+    distances, vertex = trace.distances, trace.vertex
+    graph, bones = distances.graph, distances.bones
+    unit = graph.lattice.size
     distance = float(distances.joint[joint, vertex])
     own = np.flatnonzero(bones.joint == joint)
-    point = context.graph.nodes[context.graph.vertex_node[vertex]]
+    point = graph.nodes[graph.vertex_node[vertex]]
     straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)
-    factors = factors_of(context, vertex, joint) if np.isfinite(distance) and len(own) else {}
-    weight = {name: float(row[joint]) for name, row in rows.items()}
+    factors = trace.factors(joint) if np.isfinite(distance) and len(own) else {}
+    weight = {name: float(row[joint]) for name, row in trace.rows.items()}
     path = _path(distances, joint, vertex) if len(own) else ()
     length = sum(piece.length for piece in path) / unit
-    final = list(weight.values())[-1]
-    absence = ""
-    if not final > 0:
-        absence = absence_of(context, vertex, joint, bool(path), factors, rows, STEPS)
+    final = float(trace.last[joint])
+    absence = "" if final > 0 else trace.absence(joint, bool(path), factors)
     return JointShare(
         joint=joint,
         name=rig.skeleton.names[joint],
@@ -259,7 +264,7 @@ def _share(
         steps=weight,
         weight=final,
         file_weight=None if rig.weights is None else float(rig.weights[vertex, joint]),
-        rank=rank_of(context, vertex, joint, length),
+        rank=trace.rank(joint, length),
         absence=absence,
     )
 

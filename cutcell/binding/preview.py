@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..animation.falloff.context import Context, run
+from ..animation.falloff.adjustments import Adjustments
 from ..animation.falloff.division import Division
-from ..animation.falloff.pipeline import RIG_STEPS
+from ..animation.falloff.pipeline import RigFalloff, without_tail
 from ..editing.edited import adjustments_of, joints_measured
 from ..editing.layers.contents import Computed
 from ..geodesics import BoneDistances
@@ -49,9 +49,7 @@ class Preview:
         self._distances = MovedDistances(binding.distances, method, within)
         self._falloff: _IncrementalFalloff | None = None
         if method.falloff == "rig":
-            context = Context(method, graph=binding.graph, distances=binding.distances)
-            context.adjustments = self._adjustments
-            self._falloff = _IncrementalFalloff(run(RIG_STEPS[:1], context))
+            self._falloff = _IncrementalFalloff(binding.distances, self._adjustments)
 
     def bind(self, rig: Rig) -> Binding:
         """Return about the binding of the rig with its joints elsewhere."""
@@ -69,23 +67,21 @@ class _IncrementalFalloff:
     """The falloff "rig" after small changes of few distances.
 
     The matrix of the diffusion stays, and only joints whose share of the surface has changed
-    noticeably are spread again. The context is that of the distances before, with division and
-    diffusion.
+    noticeably are spread again.
     """
 
-    def __init__(self, context: Context) -> None:
-        self._context = context
-        self._spread = context.diffusion.equilibrium(context.division.weights)
+    def __init__(self, distances: BoneDistances, adjustments: Adjustments | None) -> None:
+        self._falloff, self._adjustments = RigFalloff.over(distances, adjustments), adjustments
+        self._spread = self._falloff.diffusion.equilibrium(self._falloff.division.weights)
 
     def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
         """Return the weights (k, j) of welded vertices for changed distances."""
-        before, diffusion = self._context.division, self._context.diffusion
+        before, diffusion = self._falloff.division, self._falloff.diffusion
         weights = self._spread.copy()
-        division = Division.by(distances, before.surface, self._context.adjustments, before)
+        division = Division.by(distances, before.surface, self._adjustments, before)
         change = np.abs(division.weights - before.weights).max(axis=0)
         changed = np.flatnonzero(change > UNSEEN)
         weights[:, changed] = 0
         diffusion.solve(division.weights, changed, weights)
         diffusion.normalise(weights, division.weights)
-        context = replace(self._context, distances=distances, division=division, weights=weights)
-        return run(RIG_STEPS[2:], context).weights
+        return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))

@@ -162,14 +162,14 @@ def _limited(
     rig: Rig, binding: Binding, edits: Edits | None, touches: dict[str, Any]
 ) -> tuple[Binding, list[str]]:
     """Limit the influences to those of glTF; return a warning about the dropped weight."""
-    from ..binding.bind import weighed_again
+    from ..binding.bind import limit_influences
     from ..editing import Edits
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
     if most <= GLTF_INFLUENCES:
         return binding, []
-    limited = weighed_again(
+    limited = limit_influences(
         rig, binding, edits or Edits(), max_influences=GLTF_INFLUENCES, **touches
     )
     dropped = every.sum(axis=1, where=limited.weights == 0)

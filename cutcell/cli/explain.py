@@ -73,7 +73,7 @@ def explain(
 
 
 def _print(heading: str, explanation: Explanation, joint: str | None) -> None:
-    from ..binding.explain import STEPS
+    from ..binding.absence import STEPS
 
     console = Console(highlight=False)
     place = ", ".join(f"{x:.4g}" for x in explanation.position)

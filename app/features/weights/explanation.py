@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from cutcell.binding import Explanation, JointShare
-from cutcell.binding.explain import STEPS
+from cutcell.binding.absence import STEPS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
 from cutcell_viewers.joint_colors import colors_of

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...graph import CutCellGraph
 from .components import SMALL, longest_sides
 from .containment import ramp
-from .context import Context
+from .diffusion import Diffusion
 from .rigid_accessories import nearest_on_body
+from .surface_operators import SurfaceOperators
 
 OF_BODY = 0.4, 0.6
 """A component is a garment if joints with bones in the body have the second part of its weight;
@@ -18,13 +20,17 @@ IN_BODY = 0.5
 
 
 def drape(
-    context: Context, weights: NDArray[np.float64], independent: NDArray[np.bool_]
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    containment: NDArray[np.float64],
+    diffusion: Diffusion,
+    weights: NDArray[np.float64],
+    independent: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
     """Give garments the weights of the nearest surface of the body, smoothed: capes, skirts.
 
-    Shapes: weights (k, j), independent (components,); returns (k, j).
+    Shapes: containment (components, j), weights (k, j), independent (components,); returns (k, j).
     """
-    containment, surface = context.division.containment, context.operators()
     component, areas = surface.component, surface.areas
     has_bones = np.asarray(containment.max(axis=1) > 0)
     is_garment = ~has_bones & ~independent & (longest_sides(surface.points, component) > SMALL)
@@ -34,7 +40,7 @@ def drape(
     garment = np.flatnonzero(follows)
     if not len(garment):
         return weights
-    _, mean = nearest_on_body(context.graph, has_bones[component], surface.points[garment])
+    _, mean = nearest_on_body(graph, has_bones[component], surface.points[garment])
     draped = weights.copy()
     draped[garment] = mean @ weights
-    return weights + follows[:, None] * (context.diffusion.spread(draped) - weights)
+    return weights + follows[:, None] * (diffusion.spread(draped) - weights)

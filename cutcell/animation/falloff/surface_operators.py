@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,11 +40,6 @@ class SurfaceOperators:
     stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
 
     @classmethod
-    def of(cls, graph: CutCellGraph) -> SurfaceOperators:
-        """Compute those of a graph's mesh."""
-        return cls.over(graph.nodes[: graph.first_point], graph.faces)
-
-    @classmethod
     def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> SurfaceOperators:
         """Compute those of a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
         a, b, c = faces.T
@@ -51,6 +47,16 @@ class SurfaceOperators:
         normals, areas, rows = _operators(points, faces)
         component = label_components(faces, len(points))
         return cls(points, faces, normals, areas, component, rows)
+
+
+_computed: WeakKeyDictionary[CutCellGraph, SurfaceOperators] = WeakKeyDictionary()
+
+
+def surface_of(graph: CutCellGraph) -> SurfaceOperators:
+    """Return the operators of a graph's mesh, computed once."""
+    if graph not in _computed:
+        _computed[graph] = SurfaceOperators.over(graph.nodes[: graph.first_point], graph.faces)
+    return _computed[graph]
 
 
 # One compiled function: each call from another thread has to wait for Python's lock.

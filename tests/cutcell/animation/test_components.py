@@ -13,7 +13,7 @@ from cutcell.animation.falloff.containment import (
     ramp,
 )
 from cutcell.animation.falloff.rigid_accessories import attach_accessories
-from cutcell.animation.falloff.surface_operators import SurfaceOperators
+from cutcell.animation.falloff.surface_operators import SurfaceOperators, surface_of
 from cutcell.geodesics import Bones
 from cutcell.geometry.triangles import label_components
 from tests import meshes
@@ -115,7 +115,7 @@ def test_a_body_in_patches_has_no_accessories():
     soup = vertices[faces].reshape(-1, 3) + np.repeat(np.arange(len(faces)) * 1e-3, 3)[:, None]
     triangles = np.arange(len(soup)).reshape(-1, 3)
     graph = build_graph(TriangleMesh(soup, triangles), 16, connectivity="any")
-    surface = SurfaceOperators.of(graph)
+    surface = surface_of(graph)
     containment = np.zeros((int(surface.component.max()) + 1, 2))
     containment[0, 0] = 1
     weights = np.random.default_rng(0).random((len(surface.points), 2))
@@ -192,7 +192,7 @@ def test_no_component_is_of_two_joints():
     rig = head_with_eyes()
     joints = np.concatenate([rig.skeleton.joints, rig.skeleton.joints[2:3] + 0.01])
     graph = build_graph(rig.mesh, 16)
-    surface = SurfaceOperators.of(graph)
+    surface = surface_of(graph)
     skeleton = Skeleton(joints, [-1, 0, 1, 1, 1])
     place = graph.lattice.to_unit(joints)
     bones = Bones(place, place, np.arange(5, dtype=np.int32))
