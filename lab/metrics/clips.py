@@ -13,8 +13,7 @@ from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
-from .deformation import CM2, check_fit, longest_side
-from .weight_error import checked_pair
+from .deformation import CM2, checked_fit, longest_side
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""
@@ -76,9 +75,7 @@ def clip_error(
     ParameterError
         An unknown `count`.
     """
-    rig.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, rig.mesh, rig.skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     share = vertex_shares(rig.mesh, count)
     errors = []
     for clip in rig.clips:

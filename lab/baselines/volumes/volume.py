@@ -256,11 +256,7 @@ def _bind(
             "column": column,
             "iterations": iterations,
         }
-        try:
-            result = _isolated(solver, job, limit, SOLVERS[solver])
-        except WorkFailedError:
-            run.end("weights")
-            raise
+        result = _isolated(solver, job, limit, SOLVERS[solver])
         run.end("weights", float(result["seconds"]))  # the start of its process does not count
         weights = np.zeros((len(body.points), body.joints))
         on_surface = np.einsum("kc,kcj->kj", filled.shares, result["weights"][filled.corners])
