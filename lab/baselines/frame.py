@@ -67,7 +67,6 @@ def bind_by(solve: Solve, rig: Rig, method: Method) -> BaselineBinding:
     try:
         welded = solve(body, run)
     except WorkFailedError as error:
-        run.end("weights")
         return BaselineBinding(None, run.seconds, tuple(run.warnings), str(error))
     weights, warnings = _finish(rig, body, welded, method)
     run.end("weights")

@@ -172,6 +172,10 @@ def _bind(
         run.end("cage", seconds)
         if cage is None:
             raise WorkFailedError(failed)
-        return carry(cage.vertices, cage.faces, body.points, cage.weights(body.joints))
+        try:
+            return carry(cage.vertices, cage.faces, body.points, cage.weights(body.joints))
+        except WorkFailedError:
+            run.end("weights")
+            raise
 
     return bind_by(solve, rig, method)

@@ -256,7 +256,11 @@ def _bind(
             "column": column,
             "iterations": iterations,
         }
-        result = _isolated(solver, job, limit, SOLVERS[solver])
+        try:
+            result = _isolated(solver, job, limit, SOLVERS[solver])
+        except WorkFailedError:
+            run.end("weights")
+            raise
         run.end("weights", float(result["seconds"]))  # the start of its process does not count
         weights = np.zeros((len(body.points), body.joints))
         on_surface = np.einsum("kc,kcj->kj", filled.shares, result["weights"][filled.corners])
