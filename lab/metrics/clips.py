@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose import linear_blend_skinning
-from cutcell.pose.skin import Gap
 from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
@@ -103,14 +103,18 @@ def squared_distances(
     return (difference * difference).sum(axis=1) / longest_side(mesh) ** 2
 
 
-def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[float, float, float]:
-    """Return the distances between two sets of weights while a clip plays, in the gap's unit.
+def motion_error(
+    clip: Clip,
+    lengths_in: Callable[[NDArray[np.float64]], NDArray[np.floating]],
+    progress: Progress = silent,
+) -> tuple[float, float, float]:
+    """Return the distances between two sets of weights while a clip plays.
 
     Parameters
     ----------
     clip : Clip
-        In the space of the gap's points.
-    gap : Gap
+    lengths_in : callable
+        Takes a pose (j, 4, 4) of the clip and returns the distance of each vertex, shape (n,).
     progress : callable
         See `cutcell.runtime.progress`.
 
@@ -126,7 +130,7 @@ def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[flo
     squares = greatest = most = 0.0
     for done, time in enumerate(times):
         progress("error", done / len(times))
-        lengths = gap.lengths(clip.sample(time))
+        lengths = lengths_in(clip.sample(time))
         squares += float(np.square(lengths).mean()) / len(times)
         greatest = max(greatest, float(lengths.max()))
         most = max(most, float(np.quantile(lengths, NEARLY_ALL)))

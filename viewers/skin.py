@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .dual_quaternions import blended, rotated
+from cutcell.pose.dual_quaternions import blended, rotated
 
 MAX_INFLUENCES = 8
 Blending = Literal["linear", "dual"]
