@@ -39,6 +39,18 @@ BUILDERS["graph"](session)
 assert cutcell.Method(strict=True).strict and "strict" in METHOD_OPTIONS and "strict" in GRAPH
 assert session.state.strict is False
 """
+FORMAT = """
+from pathlib import Path
+import cutcell
+from cutcell.cli.options import _RIG
+from tests.cutcell.io.test_formats import listed
+from cutcell.io.formats import FORMATS
+Path("a.tri").write_text("# triangles\\n0 0 0 1 0 0 0 1 0\\n")
+for source in ("a.tri", Path("a.tri").read_bytes()):
+    assert len(cutcell.load(source).mesh.faces) == 1
+assert ".tri (triangles as text)" in _RIG.help
+assert set(listed(Path("docs/formats.md"))) == {frozenset(f.SUFFIXES) for f in FORMATS}
+"""
 
 
 def files_of(recipe: str) -> dict[str, list[str]]:
@@ -67,13 +79,17 @@ def follow(lines: list[str], path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("recipe", "most", "check"),
-    [("Adding a panel", 6, PANEL), ("Adding an option of the method", 4, OPTION)],
-    ids=["panel", "option"],
+    [
+        ("Adding a panel", 6, PANEL),
+        ("Adding an option of the method", 4, OPTION),
+        ("Adding a file format", 2, FORMAT),
+    ],
+    ids=["panel", "option", "format"],
 )
 def test_a_recipe_is_enough(recipe, most, check, tmp_path):
     files = files_of(recipe)
     assert len(files) <= most
-    names = {"app": "cutcell_app", "cutcell": "cutcell"}
+    names = {"app": "cutcell_app", "cutcell": "cutcell", "docs": "docs"}
     for folder, name in names.items():
         shutil.copytree(ROOT / folder, tmp_path / name, ignore=shutil.ignore_patterns("__py*"))
     for path, lines in files.items():
