@@ -3,7 +3,7 @@
 python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--exact 2] [--markdown OUT]
 
 The rig's triangles are quartered again and again. Weights of many vertices come from coarser meshes
-(`cutcell/weights/rig_falloff/diffusion.py`); the exact weights are those by factors of the whole
+(`cutcell/animation/falloff/diffusion.py`); the exact weights are those by factors of the whole
 matrix, from the same distances. `diagnose` checks the rig with its new weights.
 """
 
@@ -20,7 +20,7 @@ import numpy as np
 import trimesh
 
 import cutcell
-from cutcell.weights.rig_falloff import diffusion
+from cutcell.animation.falloff import diffusion
 from cutcell_lab.benchmarks.rigs import ROOT
 from cutcell_lab.benchmarks.tables import Table, publish, seconds
 

@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.geometry.triangles import normals
 from cutcell.geometry.welded import WeldedMesh
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig, TriangleMesh
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes
+from .skin import Skin
 
 CREASE = np.cos(np.radians(45))
 """Faces that meet at a sharper angle than this keep their edge."""

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..animation.falloff.components import SMALL, bone_containment
+from ..animation.falloff.rigid_accessories import CONTACT, nearest_on_body
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..graph import INTERIOR, CutCellGraph
 from ..graph.winding.exact import winding_numbers_of
 from ..rig.deform_joints.conventions import kinds_by_name
 from ..rig.names import words
 from ..runtime.display import count, share
-from ..weights.rig_falloff.components import SMALL, bone_containment
-from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
 from .finding import Finding, found
 from .subject import Subject, bones_distance
 

@@ -15,7 +15,7 @@ order x, y, z, so lines are perturbed consistently.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,9 @@ def next_hits(
     u, v = np.clip((across[:, :2] * columns).astype(np.int64), 0, columns - 1).T
     start, order = sort_by_group(u * columns + v, columns * columns)
     room = (HITS_EACH + 1) * len(points)  # the last face may hit all of them
-    block = [np.empty(room, kind) for kind in (np.int32, np.int64, np.float64, np.int8)]
+    block: list[NDArray[Any]] = [
+        np.empty(room, kind) for kind in (np.int32, np.int64, np.float64, np.int8)
+    ]
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
     count, first = _list_hits(projected, faces, across[order], start, columns, first, *block)
     face, line, ahead, sign = (values[:count] for values in block)

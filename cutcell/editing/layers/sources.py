@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ...animation.falloff.rigid_accessories import attach
 from ...errors import ParameterError, WeightsError
 from ...graph import CutCellGraph
 from ...method import Method
 from ...rig import Rig
 from ...weights.prune import prune
-from ...weights.rig_falloff.rigid_accessories import attach
 from ..locks import joint_index, lock_joints
 from ..selections import Neighbours
 from ..symmetry import balanced, find_mirror, mirrored

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...animation.any_angle.contraction import Contraction
 from ...graph import CutCellGraph
 from ...graph.inside_edges import cells_inside
 from ...graph.winding.exact import winding_numbers_of
-from ..any_angle.contraction import Contraction
 
 SPACING = 0.5
 """Lattice cells between samples of a segment."""
