@@ -83,5 +83,5 @@ def error_limits(lengths: ArrayLike) -> tuple[float, float]:
 
 def millimetres(rig: Rig) -> float:
     """Return the mm of a length of 1 in the scene, where the longest side is 1 m."""
-    used = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
+    used = to_scene(rig, rig.mesh.vertices[rig.mesh.used])
     return 1000 / float(np.ptp(used, axis=0).max())

@@ -128,7 +128,7 @@ def bounds_of(state: State) -> np.ndarray:
     """Return the lowest and highest corner of the body at rest, shape (2, 3)."""
     rig = state.rig
     if rig not in _bounds_of_rig:
-        points = rig.mesh.vertices[np.unique(rig.mesh.faces)] @ rig.world[:3, :3].T
+        points = rig.mesh.vertices[rig.mesh.used] @ rig.world[:3, :3].T
         points += rig.world[:3, 3]
         bounds = np.stack([points.min(axis=0), points.max(axis=0)])
         bounds.flags.writeable = False

@@ -161,8 +161,7 @@ def _degenerate(subject: Subject) -> Iterator[Finding]:
 
 
 def _vertices(subject: Subject) -> Iterator[Finding]:
-    faces = subject.rig.mesh.faces
-    used = np.unique(faces)
+    faces, used = subject.rig.mesh.faces, subject.rig.mesh.used
     if len(used) >= UNWELDED * faces.size and len(faces) > 1:
         left = len(np.unique(subject.welded[used]))
         yield from found("unwelded-vertices", vertices=used, used=len(used), left=left)

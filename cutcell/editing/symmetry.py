@@ -44,9 +44,7 @@ class Mirror:
 
 def find_mirror(rig: Rig) -> Mirror:
     """Find the plane, orthogonal to x, y or z, across which most vertices have a partner."""
-    used = np.zeros(len(rig.mesh.vertices), bool)
-    used[rig.mesh.faces] = True
-    best, share = None, 0.0
+    used, best, share = rig.mesh.used, None, 0.0
     # Welded vertices: copies of a vertex at a seam must all get the same partner.
     welded = rig.mesh.welded
     points = rig.mesh.cube.to_file(welded.points)

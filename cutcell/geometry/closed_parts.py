@@ -22,9 +22,11 @@ def separate_closed_parts(
     and the closed part of each face, (m,), or NONE.
     """
     vertices, index, is_whole = mesh.points, mesh.index, np.repeat(mesh.is_whole, 3)
-    partner = _pair_around_edges(vertices, mesh.faces, mesh.edges.partner, is_whole)
-    start, end, is_paired = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), partner != NONE
-    n, k, used = len(index), len(vertices), np.unique(start[is_whole])
+    partner = _pair_around_edges(mesh)
+    start, end, is_paired = faces.ravel(), faces[:, [1, 2, 0]].ravel(), partner != NONE
+    n, k, is_used = len(index), len(vertices), np.zeros(len(index), np.bool_)
+    is_used[faces[mesh.is_whole]] = True
+    used = np.flatnonzero(is_used)
     seam = np.flatnonzero(is_paired & (start != end[partner]))
     seams = np.stack([start[seam], start[partner[seam]]], axis=1)
     links = np.concatenate([faces[:, :2], faces[:, 1:], seams])
@@ -54,18 +56,17 @@ def separate_closed_parts(
     return WeldedMesh(vertices[keys // (n + k)], index, index[faces]), closed
 
 
-def _pair_around_edges(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    partner: NDArray[np.int32],
-    is_whole: NDArray[np.bool_],
-) -> NDArray[np.int32]:
+def _pair_around_edges(mesh: WeldedMesh) -> NDArray[np.int32]:
     """Pair half-edges at edges of many faces: the two faces of a pair have solid between them.
 
     Without a pair remain those whose edge has no such order, and at the rims of open parts.
     """
-    single = np.flatnonzero((partner == NONE) & is_whole)
-    start, end = faces.ravel()[single], np.roll(faces, -1, axis=1).ravel()[single]
+    vertices, faces, partner = mesh.points, mesh.faces, mesh.edges.partner
+    single = np.flatnonzero((partner == NONE) & np.repeat(mesh.is_whole, 3))
+    if not len(single):
+        return partner
+    face, corner = np.divmod(single, 3)
+    start, end, third = (faces[face, (corner + k) % 3] for k in range(3))
     low, high = np.minimum(start, end), np.maximum(start, end)
     _, first, which, uses = np.unique(
         low * np.int64(len(vertices)) + high,
@@ -75,7 +76,7 @@ def _pair_around_edges(
     )
     along = vertices[high] - vertices[low]
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    out = vertices[np.roll(faces, -2, axis=1).ravel()[single]] - vertices[low]
+    out = vertices[third] - vertices[low]
     out -= (out * along).sum(axis=1, keepdims=True) * along
     reference = out[first][which]
     sine = (along * np.cross(reference, out)).sum(axis=1)

@@ -39,7 +39,7 @@ class MeshEdges(NamedTuple):
 
 def find_edges(faces: NDArray[np.int32]) -> MeshEdges:
     """List the edges of welded faces, shape (m, 3), except those from a vertex to itself."""
-    return MeshEdges(*_find_edges(faces, int(faces.max()) + 1))
+    return MeshEdges(*_find_edges(faces, int(faces.max(initial=-1)) + 1))
 
 
 @compiled
@@ -57,16 +57,20 @@ def _find_edges(faces, vertices):
         by_high[v + 1] += by_high[v]
         by_low[v + 1] += by_low[v]
     half_edges = by_low[vertices]
-    once = np.empty((half_edges, 3), np.int32)  # lower vertex, higher vertex, half-edge
+    once = np.empty((half_edges, 4), np.int32)  # lower vertex, higher, half-edge, is face whole
     for f in range(len(faces)):
+        is_whole = (
+            faces[f, 0] != faces[f, 1] and faces[f, 1] != faces[f, 2] and faces[f, 2] != faces[f, 0]
+        )
         for k in range(3):
             a, b = faces[f, k], faces[f, (k + 1) % 3]
             if a != b:
                 slot = by_high[max(a, b)]
                 once[slot, 0], once[slot, 1] = min(a, b), max(a, b)
                 once[slot, 2] = 3 * f + k if a < b else ~(3 * f + k)
+                once[slot, 3] = is_whole
                 by_high[max(a, b)] += 1
-    twice = np.empty((half_edges, 3), np.int32)
+    twice = np.empty((half_edges, 4), np.int32)
     for s in range(half_edges):
         low = once[s, 0]
         copy_to(once[s], twice[by_low[low]])
@@ -77,7 +81,7 @@ def _find_edges(faces, vertices):
     partner = np.full(3 * len(faces), NONE, np.int32)
     count, first = 0, 0
     for s in range(half_edges):
-        a, b, half_edge = twice[s]
+        a, b, half_edge, is_whole = twice[s]
         if count == 0 or edges[count - 1, 0] != a or edges[count - 1, 1] != b:
             if s - first == 2:
                 _pair(twice[first, 2], twice[first + 1, 2], partner)
@@ -85,15 +89,10 @@ def _find_edges(faces, vertices):
             incidence[count], uses[count] = 0, 0
             count, first = count + 1, s
         incidence[count - 1] += 1 if half_edge >= 0 else -1
-        uses[count - 1] += _is_whole(faces[max(half_edge, ~half_edge) // 3])
+        uses[count - 1] += is_whole
     if half_edges - first == 2:
         _pair(twice[first, 2], twice[first + 1, 2], partner)
     return edges[:count].copy(), incidence[:count].copy(), uses[:count].copy(), partner
-
-
-@compiled(inline="always")
-def _is_whole(face):
-    return face[0] != face[1] and face[1] != face[2] and face[2] != face[0]
 
 
 @compiled(inline="always")

@@ -89,10 +89,9 @@ class TriangleMesh(Summarized):
                 f"face {bad[0]} uses the vertices {faces[bad[0]].tolist()}, but the mesh has "
                 f"only {len(vertices)} (numbered from 0); faces out of range: {len(bad)}"
             )
-        used = vertices[np.unique(faces)]
-        if (used == used[0]).all():
-            raise MeshError("all faces of the mesh lie in one point; it has no extent")
         assign(self, vertices=frozen(vertices), faces=frozen(faces.astype(np.int32)))
+        if (self.bounds[0] == self.bounds[1]).all():
+            raise MeshError("all faces of the mesh lie in one point; it has no extent")
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -100,9 +99,16 @@ class TriangleMesh(Summarized):
         return {"vertices": len(self.vertices), "triangles": len(self.faces), "size": size}
 
     @cached_property
+    def used(self) -> NDArray[np.intp]:
+        """The vertices that faces use, ascending."""
+        is_used = np.zeros(len(self.vertices), np.bool_)
+        is_used[self.faces] = True
+        return np.flatnonzero(is_used)
+
+    @cached_property
     def bounds(self) -> NDArray[np.float64]:
         """Lowest and highest corner of the faces' bounding box, shape (2, 3)."""
-        used = self.vertices[np.unique(self.faces)]
+        used = self.vertices[self.used]
         return np.stack([used.min(axis=0), used.max(axis=0)])
 
     @cached_property
@@ -163,9 +169,8 @@ def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float
     """
     check_choice("count", count, COUNTS)
     share = np.zeros(len(mesh.vertices))
-    used = np.unique(mesh.faces)
-    share[used] = 1.0
+    share[mesh.used] = 1.0
     if count == "welded":
-        welded = mesh.welded.index[used]
-        share[used] = 1.0 / np.bincount(welded)[welded]
+        welded = mesh.welded.index[mesh.used]
+        share[mesh.used] = 1.0 / np.bincount(welded)[welded]
     return share / share.sum()

@@ -65,7 +65,7 @@ def with_islands(rig: Rig, resolution: int) -> NDArray[np.float64] | None:
     """Give patches to a joint of the farther half that no vertex of the patch follows."""
     rng = np.random.default_rng(SEED)
     vertices, weights = rig.mesh.vertices, _weights(rig).copy()
-    carrying, used = _carrying(rig), np.unique(rig.mesh.faces)
+    carrying, used = _carrying(rig), rig.mesh.used
     size = max(4, int(ISLAND * len(used)))
     dropped = 0
     for _ in range(ISLANDS):

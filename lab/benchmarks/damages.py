@@ -213,7 +213,7 @@ def flatten(rig: Rig, seed: int) -> Damaged:
     # A fiftieth of a cell, between two planes of the lattice: these lie evenly about the middle.
     thin = _size(rig) / 64 / 50
     vertices[:, axis] = middle + (vertices[:, axis] - middle) / np.ptp(vertices[:, axis]) * thin
-    return Damaged(_with_mesh(rig, vertices, rig.mesh.faces), np.unique(rig.mesh.faces), "vertices")
+    return Damaged(_with_mesh(rig, vertices, rig.mesh.faces), rig.mesh.used, "vertices")
 
 
 def detached_part(rig: Rig, seed: int) -> Damaged:
@@ -322,7 +322,7 @@ def unused_joint(rig: Rig, seed: int) -> Damaged:
 
 def _patch(rig: Rig, seed: int, share: int = 20) -> NDArray[np.intp]:
     """Return vertices around one, with all that lie where these do."""
-    used = np.unique(rig.mesh.faces)
+    used = rig.mesh.used
     chosen = used[_around(rig.mesh.vertices[used], max(len(used) // share, 6), seed)]
     place = rig.mesh.welded.index
     return np.intersect1d(np.flatnonzero(np.isin(place, place[chosen])), used)
@@ -333,7 +333,7 @@ def leak_weights(rig: Rig, seed: int) -> Damaged:
     assert rig.weights is not None
     joints = np.flatnonzero(rig.skeleton.deform)
     leaf = rig.skeleton.joints[_leaf(rig)]
-    used = np.unique(rig.mesh.faces)
+    used = rig.mesh.used
     near = used[np.argsort(np.linalg.norm(rig.mesh.vertices[used] - leaf, axis=1))]
     chosen = np.sort(near[: max(len(used) // 30, 6)])
     away = np.linalg.norm(rig.skeleton.joints[joints] - leaf, axis=1)

@@ -14,8 +14,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 
 from cutcell.errors import FileError, MissingLibraryError
+from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import distance_to_segment
-from cutcell.geometry.triangles import face_edges
 from cutcell.io.meshes.obj import write_obj
 from cutcell.io.rignet import word_names
 from cutcell.rig import TriangleMesh
@@ -216,7 +216,7 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
         "file_name": np.bytes_(name.encode()),
         "vertices": entry.vertices,
         "faces": entry.faces,
-        "edges": np.unique(face_edges(entry.faces), axis=0).astype(np.int64),
+        "edges": find_edges(entry.faces).edges.astype(np.int64),
         "skin": entry.weights if entry.artist is None else entry.artist,
         "prior": entry.weights,
         "prior_points": at_points(entry.weights, entry.faces, points).astype(np.float32),

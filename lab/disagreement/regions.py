@@ -11,7 +11,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cutcell.geodesics import BoneDistances
-from cutcell.geometry.triangles import face_edges
 from cutcell.graph import CutCellGraph
 from cutcell.graph.fingerprint import data_fingerprint, require_same
 from cutcell.rig import Rig
@@ -206,10 +205,9 @@ def _patches(
     count = len(graph.vertex_node)
     number = np.full(count, -1, np.intp)
     number[vertices] = np.arange(len(vertices))
-    first = np.unique(graph.vertex_node, return_index=True)[1]
-    corners = first[graph.faces]
+    first = graph.mesh.first
     copies = np.stack([np.arange(count), first[graph.vertex_node]], axis=1)
-    ends = number[np.concatenate([face_edges(corners), copies])]
+    ends = number[np.concatenate([first[graph.mesh.edges.edges], copies])]
     low, high = np.sort(ends[(ends >= 0).all(axis=1) & (ends[:, 0] != ends[:, 1])], axis=1).T
     ends = np.stack(np.divmod(np.unique(low * count + high), count), axis=1)
     length = np.linalg.norm(difference, axis=1)

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cutcell.errors import SkeletonError, WeightsError
-from cutcell.geometry.weld import WELD_TOLERANCE, weld
 from cutcell.rig import Rig, Skeleton
 from cutcell.runtime.display import listed
 
@@ -24,7 +23,7 @@ class _Placed:
     def __init__(self, rig: Rig) -> None:
         turn, shift = rig.world[:3, :3].T, rig.world[:3, 3]
         vertices, joints = rig.mesh.vertices @ turn + shift, rig.skeleton.joints @ turn + shift
-        self.used = np.unique(rig.mesh.faces)
+        self.mesh, self.used = rig.mesh.welded, rig.mesh.used
         low, high = vertices[self.used].min(axis=0), vertices[self.used].max(axis=0)
         side = (high - low).max()
         self.vertices, self.joints = (vertices - low) / side, (joints - low) / side
@@ -83,7 +82,8 @@ def _at_vertices(
     weights: NDArray[np.float64], source: _Placed, target: _Placed
 ) -> NDArray[np.float64]:
     """Return the weights (n, j) of the source at the vertices of the target."""
-    points, group = weld(source.vertices[source.used], WELD_TOLERANCE)
+    welded, group = np.unique(source.mesh.index[source.used], return_inverse=True)
+    points = source.vertices[source.mesh.first[welded]]
     # Split vertices at one position may differ: their mean does not depend on their order.
     mean = np.zeros((len(points), weights.shape[1]))
     np.add.at(mean, group, weights[source.used])

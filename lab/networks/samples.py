@@ -12,7 +12,6 @@ from scipy.sparse.csgraph import dijkstra, shortest_path
 
 from cutcell.errors import WeightsError
 from cutcell.geometry.edges import find_edges
-from cutcell.geometry.weld import WELD_TOLERANCE, weld
 from cutcell.rig import Rig, Skeleton
 
 from ..dataset.audit.points import mesh_normals
@@ -171,16 +170,11 @@ class _Welded:
 
     @classmethod
     def of(cls, rig: Rig) -> _Welded:
-        size = longest_side(rig.mesh)
-        used = np.unique(rig.mesh.faces)
-        _, group = weld(rig.mesh.vertices[used], WELD_TOLERANCE * size)
-        first = np.full(group.max() + 1, len(used))
-        np.minimum.at(first, group, np.arange(len(used)))
-        welded = np.zeros(len(rig.mesh.vertices), np.int32)
-        welded[used] = group
-        vertices = used[first].astype(np.int64)
-        faces, places = welded[rig.mesh.faces], rig.mesh.vertices[vertices]
-        return cls(places / size, faces, mesh_normals(places, faces)[1], vertices)
+        used, faces = np.unique(rig.mesh.welded.faces, return_inverse=True)
+        faces = faces.reshape(-1, 3).astype(np.int32)
+        vertices = rig.mesh.welded.first[used].astype(np.int64)
+        places = rig.mesh.vertices[vertices]
+        return cls(places / longest_side(rig.mesh), faces, mesh_normals(places, faces)[1], vertices)
 
 
 def _sample(rig: Rig, welded: _Welded, chosen: NDArray) -> Sample:

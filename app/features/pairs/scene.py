@@ -49,7 +49,7 @@ def into_box(rig: Rig, box: np.ndarray) -> Rig:
 
     The audit compares characters in this way, in a cube of side 1.
     """
-    points = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
+    points = to_scene(rig, rig.mesh.vertices[rig.mesh.used])
     low, high = points.min(axis=0), points.max(axis=0)
     scale = np.ptp(box, axis=0).max() / max(float((high - low).max()), 1e-300)
     move = np.eye(4) * [scale, scale, scale, 1]

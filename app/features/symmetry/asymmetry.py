@@ -59,7 +59,7 @@ def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
     except MeshError:  # only the shape may be mirrored, not each vertex
         mirror = joint_mirror(rig)
     vertices, shares = _images(rig.mesh, mirror, mesh_diagonal(rig), progress)
-    part = float(shares[np.unique(rig.mesh.faces)].any(axis=1).mean())
+    part = float(shares[rig.mesh.used].any(axis=1).mean())
     if part < MIN_SHARE:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: only {part:.0%} of its vertices have a "

@@ -1,4 +1,4 @@
-"""Distances to a body and tests for its inside from triangles alone, without a graph or kernels."""
+"""Distances to a body and tests for its inside from triangles alone, without a graph."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...geometry.triangles import label_components, normals
+from ...geometry.triangles import normals
 from ..mesh import TriangleMesh
 
 SPACING = 0.02
@@ -17,8 +17,6 @@ MAX_SPLITS = 50
 """Along each side of a triangle, whatever its size."""
 INSIDE = 0.3
 """Threshold of the winding number: open meshes are never whole."""
-WELD = 1 << 20
-"""Steps of a grid along the longest side: vertices in one cell are the same."""
 BLOCK = 2_000_000
 """Pairs of point and sample that are looked at together."""
 MAX_SAMPLES = 10_000_000
@@ -29,10 +27,8 @@ class Body:
     """Samples of the surface of a mesh, each with its area."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        low, high = mesh.bounds
-        self.size = float((high - low).max())
-        corners = _outward((mesh.vertices - low) / self.size, mesh.faces)
-        self._low = low
+        self.size, self._low = mesh.cube.size, mesh.cube.low
+        corners = _outward((mesh.vertices - self._low) / self.size, mesh)
         self._corners = corners
         self.points, self.areas = _samples(corners)
         self._tree = cKDTree(self.points)
@@ -73,12 +69,13 @@ class Body:
         return bool(np.arctan2(volume, below).sum() > INSIDE * 2 * np.pi)
 
 
-def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
-    """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out."""
-    grid = np.rint(vertices * WELD).astype(np.int64) @ [1 << 42, 1 << 21, 1]
-    welded = np.unique(grid, return_inverse=True)[1][faces]
-    part = label_components(welded, len(vertices))[welded[:, 0]]
-    corners = vertices[faces]
+def _outward(vertices: NDArray[np.float64], mesh: TriangleMesh) -> NDArray[np.float64]:
+    """Return corners (m, 3, 3) of triangles, turned where their connected part is inside out.
+
+    Shapes: vertices (n, 3), those of the mesh scaled.
+    """
+    part = mesh.welded.component[mesh.welded.faces[:, 0]]
+    corners = vertices[mesh.faces]
     sums = np.stack([np.bincount(part, x) for x in corners.mean(axis=1).T], axis=1)
     middles = sums / np.maximum(np.bincount(part), 1)[:, None]
     away = corners - middles[part, None]

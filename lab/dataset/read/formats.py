@@ -13,7 +13,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from cutcell.errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
-from cutcell.geometry.triangles import face_edges
+from cutcell.geometry.edges import find_edges
 from cutcell.io.articulation import HEADERS, articulation_bytes
 from cutcell.io.weights import normalised, with_deform
 from cutcell.rig import Rig, Skeleton, TriangleMesh
@@ -169,8 +169,8 @@ def faces_of_edges(vertices: NDArray, edges: NDArray) -> NDArray[np.int64]:
     ]  # fmt: skip
     if not faces:
         raise FileError("its edges make no triangles; save its faces as well")
-    triangles = np.array(faces)
-    used = np.unique(face_edges(triangles), axis=0)
+    triangles = np.array(faces, np.int32)
+    used = find_edges(triangles).edges
     if len(used) < RECOVERED * len(pairs):
         raise FileError(
             f"only {len(used):,} of its {len(pairs):,} edges lie in a triangle; its faces had more "

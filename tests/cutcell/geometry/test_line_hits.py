@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cutcell.geodesics import Bones
+from cutcell.animation.falloff.components import POINTS, bone_containment
+from cutcell.bones.bones import Bones
 from cutcell.geometry.line_hits import line_hits
 from cutcell.geometry.welded import WeldedMesh
 from cutcell.graph.rays import cast_rays, points_on_rays
-from cutcell.weights.rig_falloff.components import POINTS, bone_containment
 from cutcell_lab.baselines.visibility import Blockers
 from tests import meshes
 from tests.bars import grid_box

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.triangles import face_edges
+from ....geometry.edges import find_edges
 from ....geometry.weld import weld
 
 MAX_STEP = 1e-3
@@ -32,8 +32,8 @@ def closed_seams(
     if tolerance > MAX_STEP * np.ptp(vertices, axis=0).max():
         return vertices
     points, index = weld(vertices, 0.0)
-    edges, count = np.unique(face_edges(index[faces]), axis=0, return_counts=True)
-    rim, ends = np.unique(edges[count == 1], return_inverse=True)
+    edges = find_edges(index[faces])
+    rim, ends = np.unique(edges.edges[edges.uses == 1], return_inverse=True)
     places, group = weld(points[rim], tolerance)
     sides, count = np.unique(np.sort(group[ends].reshape(-1, 2)), axis=0, return_counts=True)
     is_shut = np.isin(group, sides[(count > 1) & (sides[:, 0] != sides[:, 1])])
