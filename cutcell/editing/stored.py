@@ -17,7 +17,7 @@ from ..binding import Binding
 from ..errors import FileError, ParameterError
 from ..io import save
 from ..io.files import naming
-from ..io.formats.gltf import SUFFIXES as GLTF
+from ..io.formats import GLTF
 from ..io.gltf.container import json_bytes, pack_glb, read_document
 from ..method import ANIMATION
 from ..rig import Rig

@@ -28,10 +28,11 @@ from ...runtime.display import listed
 from ..files import read_bytes
 from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
-from ..gltf.influences import sorted_influences, store_influences
+from ..gltf.influences import influence_attributes, sorted_influences
 from ..gltf.read.read import read_rig
 from ..gltf.read.skins import mended_warning
 from ..materials.surfaces import scene_surfaces
+from ..skeletons import SkeletonFile, of_document
 from .joints import SceneSkin, scene_skins
 
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
@@ -131,7 +132,8 @@ class _SceneBuilder(GltfBuilder):
         columns = scene[f"mesh_{k}_columns"]
         influences = sorted_influences(rows, columns, values, count, MAX_INFLUENCES)
         with np.errstate(over="ignore"):  # readers refuse what becomes infinite
-            return store_influences(self.buffer, influences, len(skin.joints), {})
+            attributes = influence_attributes(influences, len(skin.joints))
+        return {name: self.buffer.store(one) for name, one in attributes.items()}
 
     def add_clips(self, scene: Mapping[str, NDArray]) -> None:
         clips: list[dict[str, Any]] = [
@@ -177,6 +179,13 @@ def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
     )
     why_bare *= "morph targets" in dropped
     return read_rig(document, world, accessories, why_bare)
+
+
+def read_scene_skeleton(path: Path, kind: str) -> SkeletonFile:
+    """Return the bones of a file whose kind is "FBX" or "USD"."""
+    scene = scene_arrays(path, kind)
+    document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
+    return of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
 
 
 def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:

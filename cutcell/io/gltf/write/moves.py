@@ -39,6 +39,14 @@ class NewValues:
     old: int | None  # the accessor that they replace
     target: int | None = None  # of the buffer view
 
+    def store(self, buffer: BufferWriter, stored: dict[Any, int]) -> None:
+        """Store them, or refer to equal ones that were `stored` before."""
+        same = self.key, self.old, self.target, self.values.tobytes()
+        if same not in stored:
+            is_share = self.key.startswith("WEIGHTS_") and self.values.dtype.kind != "f"
+            stored[same] = buffer.store(self.values, self.old, self.target, normalized=is_share)
+        self.owner[self.key] = stored[same]
+
 
 @np.errstate(over="ignore")  # readers refuse what becomes infinite
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
@@ -77,16 +85,6 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     frames = np.linalg.inv(source.inverse)[old, :3, 3]  # a mended joint may be away from its frame
     by[old] = np.where(is_moved, new - frames, 0.0)
     return np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
-
-
-def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
-    """Store values that were taken out of a document, equal ones once."""
-    stored: dict[Any, int] = {}
-    for new in replaced:
-        same = new.old, new.target, new.values.tobytes()
-        if same not in stored:
-            stored[same] = buffer.store(new.values, new.old, new.target)
-        new.owner[new.key] = stored[same]
 
 
 def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
