@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...rig import Rig
-from ..scenes.document import read_scene, read_scene_skeleton
+from ..scenes import read_scene, read_scene_skeleton
 from ..skeletons import SkeletonFile
 
 SUFFIXES = {".fbx": rb"Kaydara FBX|;\s*FBX"}

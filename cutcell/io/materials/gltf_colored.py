@@ -15,11 +15,9 @@ from ..gltf.constants import ELEMENT_ARRAY_BUFFER
 from ..gltf.container import Document
 from ..gltf.influences import is_influence
 from ..gltf.read.accessors import find_accessor
-from .corners import Corners, join_corners
 from .face_colors import Collected, FaceColors, Materials, face_colors
-from .gltf_images import image_notes
-from .gltf_palette import Group, Palette
-from .surfaces import SurfacePaint, Surfaces
+from .gltf_palette import Group, Palette, image_notes
+from .surfaces import Corners, SurfacePaint, Surfaces, join_corners
 from .transfer import has_materials, read_corners, read_materials
 
 _Look: TypeAlias = tuple[FaceColors | None, Corners]

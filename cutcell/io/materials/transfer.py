@@ -15,11 +15,10 @@ from ...rig import Rig
 from ..gltf.container import Document
 from ..gltf.read.primitives import Primitive, StoredFaces, primitives, read_triangles
 from ..gltf.read.read import BareSource, GltfSource
-from .corners import Corners, Piece, join_corners
 from .face_colors import Collected, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
 from .obj_materials import ObjSource
-from .surfaces import Surface, SurfacePaint, Surfaces
+from .surfaces import Corners, Piece, Surface, SurfacePaint, Surfaces, join_corners
 
 BYTES_PER_FACE = 3 * (4 * 4 + 4)
 

@@ -104,9 +104,15 @@ def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
 
 
 def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArray]]:
-    """Return the mended matrices that must be saved: of joints that are moved or hold a vertex."""
+    """Return the mended matrices that must be saved: of joints that are moved or hold a vertex.
+
+    A document that was made of another format has no matrices of its own to keep.
+    """
     source, weights = rig.source, rig.weights
     assert weights is not None
+    if not source.document.is_gltf:
+        frames = np.linalg.inv(source.inverse)[:, :3, 3]
+        is_moved = is_moved | np.isclose(frames, source.skeleton.joints).all(axis=1)
     origin = file_joints(rig)
     needed: dict[int, dict[int, NDArray]] = {}
     for part in source.parts:

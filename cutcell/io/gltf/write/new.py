@@ -14,8 +14,8 @@ from .... import __version__
 from ....errors import MeshError, SkeletonError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
-from ...materials.corners import vertex_normals
 from ...materials.gltf_colored import with_rig_looks
+from ...materials.surfaces import vertex_normals
 from ...weights import KEY
 from ..buffer import BufferWriter
 from ..builder import GltfBuilder

@@ -22,7 +22,7 @@ import numpy as np
 from ....errors import FileError, MeshError, SkeletonError, WeightsError
 from ....rig import Rig
 from ...materials.gltf_colored import with_surface_looks
-from ...materials.gltf_images import carry_images
+from ...materials.gltf_palette import carry_images
 from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER
 from ..container import Document, beside, json_bytes, pack_glb
