@@ -165,7 +165,7 @@ def test_warns_of_vertices_that_no_path_reaches(run, tmp_path):
     ],
 )
 def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, monkeypatch, name, sentence):
-    monkeypatch.setattr("cutcell.editing.bind", pytest.fail)
+    monkeypatch.setattr("cutcell.binding.bind", pytest.fail)
     assert sentence in refused(run("bind", bar, tmp_path / name))
 
 
@@ -224,7 +224,7 @@ def test_the_mesh_that_was_read_is_left_as_it_is(run, bar, tmp_path):
 
 
 def test_a_file_that_would_be_replaced_is_told_before_the_work(run, bar, tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell.editing.bind", pytest.fail)
+    monkeypatch.setattr("cutcell.binding.bind", pytest.fail)
     (tmp_path / "out.obj").write_text("another mesh")
     sentence = refused(run("bind", bar, tmp_path / "out.txt"))
     assert "out.txt: its mesh belongs in out.obj" in sentence
