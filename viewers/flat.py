@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.bones.bones import Sources
+from cutcell.bones.nearest import NodeTree
 from cutcell.geodesics import Bones
-from cutcell.geodesics.bones import Sources
-from cutcell.geodesics.nearest import NodeTree
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
 from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph

@@ -10,10 +10,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cutcell.binding import Binding
-from cutcell.editing import Edits, bind
-from cutcell.editing.bind import bind_steps
-from cutcell.editing.bind import finished as finish
+from cutcell.binding import Binding, bind
+from cutcell.binding.stages import bind_edited
+from cutcell.editing import Edits
 from cutcell.errors import Cancelled, CutcellError
 from cutcell.geodesics.fallback import REACHED
 from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
@@ -22,7 +21,6 @@ from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
-from cutcell.weights.context import Context, run
 from cutcell.weights.warm_up import warm_up
 
 from ..metrics import METRICS, Measured, Metric
@@ -232,11 +230,9 @@ def bind_setting(
         fresh = bind(rig, method.resolution, method=method, graph=earlier.graph, progress=progress)
         return replace(fresh, seconds={**fresh.seconds, **spent})
     spent["distances"] = earlier.seconds.get("distances", 0.0)
-    nothing = Edits()
-    steps = bind_steps(rig, method, nothing, distances=earlier.distances)
 
     def work(report: Progress) -> Binding:
-        return finish(rig, run(steps, Context(method, rig.allowed, report)), nothing)
+        return bind_edited(rig, method, Edits(), distances=earlier.distances, progress=report)
 
     again = cancellable(work, progress, "weights")
     return replace(again, seconds={**again.seconds, **spent})
