@@ -8,6 +8,7 @@ from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..binding import Binding, binding_steps
 from ..errors import SkeletonError
@@ -142,12 +143,12 @@ def bind_steps(
     """
     layers = edits.stack(refinement(rig, **refinements))
 
-    def apply(context: Context) -> NDArray[np.float64]:
+    def apply(context: Context) -> csr_array:
         def computed(layer: Layer) -> NDArray[np.float64]:
-            return layer_context(rig, context, edits.reach, layer).weights
+            return layer_context(rig, context, edits.reach, layer).weights.toarray()
 
         sources = RigSources(rig, method, context.graph, context.operators, computed)
-        return apply_layers(context.weights, layers, sources, after)
+        return csr_array(apply_layers(context.weights.toarray(), layers, sources, after))
 
     steps = computed_steps(rig, method, edits.reach, graph, distances)
     return [*steps, *([Step("layers", apply)] if layers else [])]

@@ -203,7 +203,7 @@ def explain(
         if step.name not in STEPS:
             return
         row = vertex if context.is_per_vertex else context.graph.vertex_node[vertex]
-        weights = context.weights[row].copy()
+        weights = context.weights[[row]].toarray()[0]
         if step.name == "normalise":
             rows["limit"] = np.where(weights > 0, next(reversed(rows.values())), 0.0)
         rows[step.name] = weights

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..binding import Binding
 from ..geodesics import BoneDistances
@@ -15,7 +16,8 @@ from ..rig import Rig
 from ..weights.context import Context, run
 from ..weights.rig_falloff.division import Division
 from ..weights.rig_falloff.pipeline import RIG_STEPS
-from ..weights.skinning_weights import keep_strongest, of_vertices, skinning_weights
+from ..weights.rows import with_data
+from ..weights.skinning_weights import keep_strongest, skinning_weights
 from .edited import adjustments_of, joints_measured
 from .layers.contents import Computed
 
@@ -58,11 +60,12 @@ class Preview:
         distances, method = self._distances.measure(rig.skeleton), self._method
         if self._falloff is None:
             weights = skinning_weights(distances, method=method, adjustments=self._adjustments)
+            rows = csr_array(weights)
         else:
             options = method.max_influences, method.threshold
             welded = keep_strongest(distances, self._falloff.weights(distances), *options)
-            weights = of_vertices(distances.graph, welded)
-        return replace(self._binding, distances=distances, weights=weights)
+            rows = welded[distances.graph.vertex_node]
+        return replace(self._binding, distances=distances, rows=rows)
 
 
 class _IncrementalFalloff:
@@ -77,15 +80,18 @@ class _IncrementalFalloff:
         self._context = context
         self._spread = context.diffusion.equilibrium(context.division.weights)
 
-    def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
+    def weights(self, distances: BoneDistances) -> csr_array:
         """Return the weights (k, j) of welded vertices for changed distances."""
         before, diffusion = self._context.division, self._context.diffusion
-        weights = self._spread.copy()
-        division = Division.by(distances, before.surface, self._context.adjustments, before)
-        change = np.abs(division.weights - before.weights).max(axis=0)
-        changed = np.flatnonzero(change > UNSEEN)
-        weights[:, changed] = 0
-        diffusion.solve(division.weights, changed, weights)
-        diffusion.normalise(weights, division.weights)
+        division = Division.by(distances, before.surface, self._context.adjustments)
+        change = abs(division.weights - before.weights).max(axis=0).toarray()
+        is_changed = change > UNSEEN
+        changed = _of_joints(division.weights, is_changed)
+        weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
+        weights = diffusion.whole(weights, division.weights)
         context = replace(self._context, distances=distances, division=division, weights=weights)
         return run(RIG_STEPS[2:], context).weights
+
+
+def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
+    return with_data(rows, rows.data * which[rows.indices])

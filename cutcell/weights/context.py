@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..geodesics import BoneDistances
 from ..graph import CutCellGraph
@@ -44,7 +45,7 @@ class Context:
         The surface divided among the joints. The paper's falloff has none.
     diffusion : Diffusion
         Diffusion over the surface. The paper's falloff has none.
-    weights : array, shape (k, j) or (n, j), float64
+    weights : csr_array, shape (k, j) or (n, j)
     is_per_vertex : bool
         True if `weights` has a row for each vertex instead of each welded vertex.
     seconds : dict of str to float
@@ -63,7 +64,7 @@ class Context:
     surface: SurfaceOperators | None = None
     division: Division = PENDING
     diffusion: Diffusion = PENDING
-    weights: NDArray[np.float64] = PENDING
+    weights: csr_array = PENDING
     is_per_vertex: bool = False
     seconds: dict[str, float] = field(default_factory=dict)
     scaled: bool = True

@@ -6,20 +6,20 @@ from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
-from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..runtime.progress import Progress, Tell, share_of, silent
-from ..runtime.threads import in_threads, parts, threads
+from ..runtime.progress import Progress, share_of, silent
 from .adjustments import Adjustments
 from .context import Context, Step, run
 from .paper_kernel import paper_kernel
-from .prune import A_PART, prune
+from .prune import prune
 from .rig_falloff.pipeline import RIG_STEPS
 from .rig_falloff.surface_operators import SurfaceOperators
+from .rows import rows_of_entries, scaled, single, with_data, with_rows
 
 
 def skinning_weights(
@@ -83,7 +83,7 @@ def skinning_weights(
         deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
         allowed = check_allowed(graph, deform, allowed)
     context = Context(method, allowed, progress, graph, distances, adjustments, surface)
-    return run(weight_steps(method, allowed), context).weights
+    return run(weight_steps(method, allowed), context).weights.toarray()
 
 
 def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tuple[Step, ...]:
@@ -100,7 +100,7 @@ def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tu
     return (*falloff, expand, Step("storable", permit), normalise)  # welded vertices may differ
 
 
-def equation_1(context: Context) -> NDArray[np.float64]:
+def equation_1(context: Context) -> csr_array:
     """Apply the paper's falloff to the distances, see `paper_kernel`."""
     distances, alpha = context.distances, context.method.alpha
     assert alpha is not None
@@ -108,56 +108,45 @@ def equation_1(context: Context) -> NDArray[np.float64]:
     distance = distances.joint if context.is_per_vertex else distances.at_welded
     if context.adjustments is not None:
         distance = distance / context.adjustments.gain[:, None]
-    return paper_kernel(distance, context.graph.lattice.diagonal, alpha)
+    return csr_array(paper_kernel(distance, context.graph.lattice.diagonal, alpha))
 
 
-def permit(context: Context) -> NDArray[np.float64]:
+def permit(context: Context) -> csr_array:
     """Drop what a vertex may not follow; one left with nothing follows its nearest joint."""
     assert context.allowed is not None
-    permitted = np.where(context.allowed, context.weights, 0.0)
+    weights, allowed = context.weights, context.allowed
+    is_allowed = allowed[rows_of_entries(weights), weights.indices]
+    permitted = with_data(weights, weights.data * is_allowed)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    distance = np.where(context.allowed[lost].T, context.distances.joint[:, lost], np.inf)
+    distance = np.where(allowed[lost].T, context.distances.at(slice(None), lost), np.inf)
     if np.isinf(distance.min(axis=0)).any():
         raise WeightsError("no joint that a vertex may follow was measured; measure by `allowed`")
-    permitted[lost, distance.argmin(axis=0)] = 1
-    return permitted / permitted.sum(axis=1, keepdims=True)
+    permitted = with_rows(permitted, lost, single(distance.argmin(axis=0), allowed.shape[1]))
+    return scaled(permitted, 1 / permitted.sum(axis=1))
 
 
-def limit(context: Context) -> NDArray[np.float64]:
+def limit(context: Context) -> csr_array:
     """Keep the largest weights of each vertex."""
     most, threshold = context.method.max_influences, context.method.threshold
     order = _by_position(context.distances)
-    report = share_of(context.report, 0.8, 0.9)
+    report = share_of(context.report, 0.8, 1)
     return prune(context.weights, most, threshold, order, report, context.scaled)
 
 
-def per_vertex(context: Context) -> NDArray[np.float64]:
+def per_vertex(context: Context) -> csr_array:
     """Return the weights of all vertices, from those of welded ones."""
     if context.is_per_vertex:
         return context.weights
     context.is_per_vertex = True
-    return of_vertices(context.graph, context.weights, share_of(context.report, 0.9, 1))
-
-
-def of_vertices(
-    graph: CutCellGraph, welded: NDArray[np.float64], report: Tell = lambda done: None
-) -> NDArray[np.float64]:
-    """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
-    weights = np.empty((len(graph.vertex_node), welded.shape[1]))
-    in_threads(
-        lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
-        parts(len(weights), threads() + weights.size // A_PART),
-        report,
-    )
-    return weights
+    return context.weights[context.graph.vertex_node]
 
 
 def keep_strongest(
     distances: BoneDistances,
-    weights: NDArray[np.float64],
+    weights: csr_array,
     max_influences: int | None = ANIMATION.max_influences,
     threshold: float = ANIMATION.threshold,
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Keep the largest weights of each vertex: the last step of `skinning_weights`.
 
     Weights of many influences can be kept, and pruned again as often as that is changed.
@@ -166,14 +155,14 @@ def keep_strongest(
     ----------
     distances : BoneDistances
         Distances that the weights were computed from.
-    weights : array, shape (n, j)
+    weights : csr_array, shape (n, j)
         Rows sum to one.
     max_influences, threshold
         See `Method`.
 
     Returns
     -------
-    array, shape (n, j), float64
+    csr_array, shape (n, j)
         Rows sum to one.
 
     Raises

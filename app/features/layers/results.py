@@ -84,7 +84,7 @@ def recompute(
         return layer_context(rig, base, reach, layer)
 
     context = cancellable(work, progress, "weights")
-    return Recomputed(context.distances, csr_array(context.weights))
+    return Recomputed(context.distances, context.weights)
 
 
 def layered(
@@ -94,7 +94,10 @@ def layered(
 
     Weights of layers that are not given are those of the base.
     """
-    base, few = binding.weights, binding.method
+    layers, few = edits.stack(), binding.method
+    if not layers:
+        return binding
+    base = binding.weights
 
     def computed(layer: Layer) -> NDArray[np.float64]:
         result = recomputed.get(_key(layer))
@@ -103,7 +106,7 @@ def layered(
         assert isinstance(layer.content, Computed)
         method = layer.content.method(few)
         options = method.max_influences, method.threshold
-        return keep_strongest(result.distances, result.weights.toarray(), *options)
+        return keep_strongest(result.distances, result.weights, *options).toarray()
 
     sources = RigSources(rig, few, binding.graph, computed=computed)
-    return replace(binding, weights=apply_layers(base, edits.stack(), sources))
+    return replace(binding, rows=csr_array(apply_layers(base, layers, sources)))

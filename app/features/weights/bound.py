@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numpy as np
 from scipy.sparse import csr_array
 
 import cutcell
@@ -64,6 +63,6 @@ def bind_wide(
 
     context = cancellable(work, progress, "distances")
     seconds = {**context.seconds, "graph": graph_seconds.get(graph, 0.0)}
-    none = np.empty((0, len(rig.skeleton.names)))
+    none = csr_array((0, len(rig.skeleton.names)))
     binding = Binding(none, graph, context.distances, seconds, (), method)
-    return Bound(binding, Influences(falloff, csr_array(context.weights)))
+    return Bound(binding, Influences(falloff, context.weights))

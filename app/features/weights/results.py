@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
@@ -117,7 +116,7 @@ def _influences(
         wide, rig.allowed, progress, distances.graph, distances, adjustments, scaled=False
     )
     context.report(0.0)
-    return Influences(options, csr_array(run(weight_steps(wide, rig.allowed), context).weights))
+    return Influences(options, run(weight_steps(wide, rig.allowed), context).weights)
 
 
 def _recomputed_inputs(state: State, key: str) -> tuple[Any, ...] | None:
@@ -154,13 +153,11 @@ def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
     binding, key = bound.binding, tuple(few.values())
     strongest = influences.strongest.get(key)
     if strongest is None:
-        wide = influences.weights.toarray()
-        strongest = csr_array(keep_strongest(binding.distances, wide, **few))
+        strongest = keep_strongest(binding.distances, influences.weights, **few)
         influences.strongest.clear()
         influences.strongest[key] = strongest
-    weights = strongest.toarray()
     options = {"leaf": binding.method.leaf, **influences.options, **few}
-    return replace(binding, weights=weights, method=binding.method.with_options(**options))
+    return replace(binding, rows=strongest, method=binding.method.with_options(**options))
 
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:

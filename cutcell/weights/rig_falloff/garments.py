@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..context import Context
+from ..rows import scaled, with_rows
 from .components import SMALL, longest_sides
 from .containment import ramp
 from .rigid_accessories import nearest_on_body
@@ -17,9 +19,7 @@ IN_BODY = 0.5
 """Part of such a bone that is inside a component."""
 
 
-def drape(
-    context: Context, weights: NDArray[np.float64], independent: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def drape(context: Context, weights: csr_array, independent: NDArray[np.bool_]) -> csr_array:
     """Give garments the weights of the nearest surface of the body, smoothed: capes, skirts.
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
@@ -35,6 +35,6 @@ def drape(
     if not len(garment):
         return weights
     _, mean = nearest_on_body(context.graph, has_bones[component], surface.points[garment])
-    draped = weights.copy()
-    draped[garment] = mean @ weights
-    return weights + follows[:, None] * (context.diffusion.spread(draped) - weights)
+    # Components do not conduct to each other: garments are spread by themselves.
+    draped = with_rows(csr_array(weights.shape), garment, mean @ weights)
+    return scaled(weights, 1 - follows) + scaled(context.diffusion.spread(draped), follows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from ...geometry.laplacian import stiffness, vertex_areas, vertex_normals
 from ...geometry.triangles import label_components
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
+from .dissection import Dissection, dissect
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,11 @@ class SurfaceOperators:
         The connected component of each welded vertex, see `label_components`.
     stiffness : tuple of arrays
         Rows of the Laplacian, see `laplacian.stiffness`.
+
+    Attributes
+    ----------
+    dissection : Dissection
+        Order in which equations with such rows are solved.
     """
 
     points: NDArray[np.float64]
@@ -37,6 +44,11 @@ class SurfaceOperators:
     areas: NDArray[np.float64]
     component: NDArray[np.int32]
     stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+
+    @cached_property
+    def dissection(self) -> Dissection:
+        """Order in which equations with such rows are solved."""
+        return dissect(*self.stiffness[:2])
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> SurfaceOperators:
