@@ -14,7 +14,6 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from cutcell.editing.locks import joint_index
-from cutcell.editing.selected import Selected
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import ParameterError
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
@@ -22,6 +21,7 @@ from cutcell.rig import Rig, TriangleMesh
 from cutcell.rig.checks import check_choice, check_number
 
 from .reach import SurfaceReach
+from .selected import Selected
 
 BrushMode = Literal["add", "subtract", "replace", "smooth"]
 

@@ -193,7 +193,8 @@ def export_bound(session: Session, done: Done) -> None:
         state.message = ("info", "There are no weights to download yet.")
         return
     rig = state.rig.with_weights(state.binding.weights)
-    settings = settings_with_layers(state.rig, state.binding, state.edits)
+    binding = state.binding
+    settings = settings_with_layers(state.rig, binding.method, binding.weights, state.edits)
 
     def write(path: Path, progress: Progress) -> None:
         check = partial(progress, "writing the file", 0.0)

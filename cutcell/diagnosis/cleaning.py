@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
-from ..editing import bind
+from ..animation.falloff.diffusion import MIN_CELLS
+from ..animation.falloff.pipeline import TAIL
+from ..binding import bind
 from ..errors import WeightsError
 from ..method import ANIMATION, check_resolution
 from ..rig import Rig
@@ -19,8 +21,6 @@ from ..runtime.compiled import compiled
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import in_threads
 from ..weights.prune import prune
-from ..weights.rig_falloff.diffusion import MIN_CELLS
-from ..weights.rig_falloff.pipeline import TAIL
 from .subject import Subject
 from .weights import INFLUENCES
 

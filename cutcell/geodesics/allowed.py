@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..bones.bones import Bones, Sources
 from ..errors import WeightsError
 from ..graph import CutCellGraph
 from ..rig.checks import as_array
 from ..runtime.progress import Progress
-from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..bones.bones import Bones, Sources, least_of_joints, per_joint
 from ..errors import ParameterError, SkeletonError
 from ..graph import CutCellGraph
 from ..graph.fingerprint import Fingerprint, distance_fingerprint
@@ -22,7 +23,6 @@ from ..rig.rig import check_units
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
 from .allowed import allowed_distances, check_allowed
-from .bones import Bones, Sources, least_of_joints, per_joint
 from .fallback import REACHED, straight_to_nearest, why_not_reached
 from .solver import BoneDistanceSolver
 from .tracing.inside import Inside

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bones.bones import Bones, Sources
 from ..geometry.segments import distance_to_segment
 from ..geometry.vectors import TIE
-from .bones import Bones, Sources
 from .solver import BoneDistanceSolver
 
 REACHED, UNUSED, UNREACHED, NOT_ALLOWED = range(4)

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.any_angle.theta_star import ON_BONE
+from ..bones.bones import Bones
 from ..graph.fingerprint import APPROXIMATE
 from ..method import Method
 from ..rig import Skeleton
-from .any_angle.theta_star import ON_BONE
-from .bones import Bones
 from .distances import BoneDistances, bone_distances
 from .fallback import REACHED
 

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.any_angle.contraction import Contraction, contract
+from ..animation.any_angle.theta_star import any_angle_paths, least_distances
+from ..animation.bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
+from ..bones.bones import Bones, Sources, bone_samples, bone_segments
+from ..bones.nearest import NodeTree
 from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Skeleton
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import submit
-from .any_angle.contraction import Contraction, contract
-from .any_angle.theta_star import any_angle_paths, least_distances
-from .bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
-from .bones import Bones, Sources, bone_samples, bone_segments
-from .nearest import NodeTree
 from .shortest_paths import shortest_paths
 
 

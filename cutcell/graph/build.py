@@ -51,7 +51,7 @@ def build_graph(
     **options
         Single options of the method: `connectivity`, `winding_threshold`, `orient`. With
         connectivity 26 there are diagonals of lattice cells that lie inside altogether; with
-        "any" there are the edges of 6, which paths may leave, see `geodesics.any_angle`.
+        "any" there are the edges of 6, which paths may leave, see `animation.any_angle`.
 
     Returns
     -------

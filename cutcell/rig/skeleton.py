@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError
+from ..runtime.display import listed
 from ..runtime.repr import Summarized
 from .checks import as_array, assign, check_finite, frozen, shown
 from .names import is_neutral
@@ -116,6 +117,10 @@ class Skeleton(Summarized):
                 '{"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
                 '{"name": "tip", "position": [0, 1, 0], "parent": "root"}]}'
             )
+
+    def listed(self, which: NDArray[np.bool_]) -> str:
+        """Return the names of some joints (j,), the first ones of many."""
+        return listed([self.names[j] for j in np.flatnonzero(which)])
 
     @cached_property
     def children(self) -> tuple[NDArray[np.intp], ...]:

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.vectors import TIE
+from ..rig.rows import with_data
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts
-from .rows import with_data
 
 
 def prune(

@@ -14,9 +14,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from cutcell.bones.bones import per_joint
 from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_path
-from cutcell.geodesics.bones import per_joint
 from cutcell.geodesics.fallback import why_not_reached
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment

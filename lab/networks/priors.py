@@ -14,7 +14,7 @@ import numpy as np
 import platformdirs
 from numpy.typing import NDArray
 
-from cutcell.editing import bind
+from cutcell.binding import bind
 from cutcell.errors import CutcellError, ParameterError, WeightsError
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.binding import Binding
+from cutcell.binding.warnings import with_warnings
 from cutcell.editing import Computed, Edits
-from cutcell.editing.binding_warnings import with_warnings
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
 from cutcell.graph.fingerprint import data_fingerprint
@@ -22,8 +22,7 @@ from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest
-from cutcell.weights.context import Context, run
-from cutcell.weights.skinning_weights import weight_steps
+from cutcell.weights.skinning_weights import last_of, weight_steps
 from cutcell.weights.warm_up import is_compiled, warm_up
 
 from ...derive.derived import Derived
@@ -112,11 +111,9 @@ def _influences(
     distances = bound.binding.distances
     wide = cutcell.ANIMATION.with_options(**options, max_influences=MOST)
     adjustments = adjustments_of(rig, distances.graph, reach)
-    context = Context(
-        wide, rig.allowed, progress, distances.graph, distances, adjustments, scaled=False
-    )
-    context.report(0.0)
-    return Influences(options, run(weight_steps(wide, rig.allowed), context).weights)
+    progress("weights", 0.0)
+    steps = weight_steps(distances, wide, rig.allowed, adjustments, progress=progress, scaled=False)
+    return Influences(options, last_of(steps))
 
 
 def _recomputed_inputs(state: State, key: str) -> tuple[Any, ...] | None:

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell import __version__
-from cutcell.binding import Binding
-from cutcell.editing import bind
+from cutcell.binding import Binding, bind
 from cutcell.errors import CutcellError
 from cutcell.geodesics import bone_distances
 from cutcell.graph import INTERIOR, MESH, SURFACE

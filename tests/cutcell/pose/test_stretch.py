@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
 import cutcell
+from cutcell.binding.warnings import with_warnings
 from cutcell.editing import Edits
-from cutcell.editing.binding_warnings import with_warnings
 from cutcell.graph import MESH, build_graph
 from cutcell.pose import stretch as module
 from cutcell.pose.stretch import MAX_SHARE, measure_stretch
@@ -123,7 +123,7 @@ def test_a_binding_measures_it_once(monkeypatch):
         measured.append(measure_stretch(*inputs))
         return measured[-1]
 
-    monkeypatch.setattr("cutcell.binding.measure_stretch", measure)
+    monkeypatch.setattr("cutcell.binding.binding.measure_stretch", measure)
     binding = cutcell.bind(WORM, 16)
     assert [binding.stretch] == measured
 
