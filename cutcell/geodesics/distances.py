@@ -9,6 +9,7 @@ from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..bones.bones import Bones, Sources, least_of_joints, per_joint
 from ..errors import ParameterError, SkeletonError
@@ -91,6 +92,14 @@ class BoneDistances(Summarized):
     def graph(self) -> CutCellGraph:
         """The graph that paths run along."""
         return self.solver.graph
+
+    @property
+    def rows(self) -> csr_array:
+        """`joint` per welded vertex, shape (k, j): an explicit entry for each measured joint."""
+        vertex, joint = np.nonzero(np.isfinite(self.at_welded.T))
+        start = np.searchsorted(vertex, np.arange(self.at_welded.shape[1] + 1)).astype(np.int32)
+        shape = self.at_welded.shape[::-1]
+        return csr_array((self.at_welded[joint, vertex], joint.astype(np.int32), start), shape)
 
     @cached_property
     def joint(self) -> NDArray[np.float64]:
