@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, hstack, vstack
 from scipy.spatial import cKDTree
 
+from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError, WeightsError
-from ..rig.checks import check_choice, check_integer, check_number
 from .layers.contents import MAX_STEPS
 from .selected import Selected
 from .selections.neighbours import STEP, Neighbours

@@ -11,10 +11,10 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from ...checks import LONG, shown
 from ...errors import ParameterError, WeightsError
 from ...geodesics import BoneDistances
 from ...rig import Rig
-from ...rig.checks import LONG, shown
 from ..locks import joint_index
 from .neighbours import Neighbours
 
