@@ -50,6 +50,32 @@ session = begin(lambda act: act())
 labels = [getattr(one, "name", "") for one in BUILDERS["graph"](session).select()]
 assert session.state.strict is False and "Reject unused vertices" in labels
 """
+METRIC = """
+import io
+from rich.console import Console
+from cutcell_lab.baselines.compare import compare, comparison_markdown
+from cutcell_lab.baselines.compare.terminal import comparison_table
+from tests.viewers.arm import arm_rig
+result = compare([arm_rig()], ["artist", "euclidean"])
+assert result.statistic("artist", "influences").median > 0
+assert "| influences |" in comparison_markdown(result)
+assert result.to_dict()["rigs"][0]["scores"][0]["influences"] > 0
+console = Console(width=200, record=True, file=io.StringIO())
+console.print(comparison_table(result, 200))
+assert "influences" in console.export_text()
+"""
+FORMAT = """
+from pathlib import Path
+import cutcell
+from cutcell.cli.options import _RIG
+from tests.cutcell.io.test_formats import listed
+from cutcell.io.formats import FORMATS
+Path("a.tri").write_text("# triangles\\n0 0 0 1 0 0 0 1 0\\n")
+for source in ("a.tri", Path("a.tri").read_bytes()):
+    assert len(cutcell.load(source).mesh.faces) == 1
+assert ".tri (triangles as text)" in _RIG.help
+assert set(listed(Path("docs/formats.md"))) == {frozenset(f.SUFFIXES) for f in FORMATS}
+"""
 
 
 def files_of(recipe: str) -> dict[str, list[str]]:
@@ -78,13 +104,18 @@ def follow(lines: list[str], path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("recipe", "most", "check"),
-    [("Adding a panel", 6, PANEL), ("Adding an option of the method", 3, OPTION)],
-    ids=["panel", "option"],
+    [
+        ("Adding a panel", 6, PANEL),
+        ("Adding an option of the method", 3, OPTION),
+        ("Adding a metric", 1, METRIC),
+        ("Adding a file format", 2, FORMAT),
+    ],
+    ids=["panel", "option", "metric", "format"],
 )
 def test_a_recipe_is_enough(recipe, most, check, tmp_path):
     files = files_of(recipe)
     assert len(files) <= most
-    names = {"app": "cutcell_app", "cutcell": "cutcell", "docs": "docs"}
+    names = {"app": "cutcell_app", "cutcell": "cutcell", "docs": "docs", "lab": "cutcell_lab"}
     for folder, name in names.items():
         unused = shutil.ignore_patterns("__py*", "pictures", "gallery")
         shutil.copytree(ROOT / folder, tmp_path / name, ignore=unused)

@@ -19,7 +19,6 @@ from panel.io.resources import DIST_DIR
 from cutcell import Binding, bind
 from cutcell.checks import check_choice
 from cutcell.geodesics import FALLBACK_REASONS
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
@@ -31,6 +30,7 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, to_hex
+from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import MIXED
 
 from ..document.state import State

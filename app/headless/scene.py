@@ -79,7 +79,7 @@ def describe(
     clip = clip_named(rig, choices.clip)
     if choices.error and state.panel == "pose":
         gap = gap_between(rig, state.binding.weights, rig.weights, state.blending)  # type: ignore[arg-type]
-        state.motion_error = motion_error(clip_in_scene(rig, clip), gap, progress)
+        state.motion_error = motion_error(clip_in_scene(rig, clip), gap.lengths, progress)
     time = choices.time or 0.0
     return replace(following(state), pose=pose_in_scene(rig, pose_at(clip, time)))
 

@@ -92,7 +92,7 @@ def _weightless(rig: Rig, distances: BoneDistances, weights: NDArray[np.float64]
         finer = _finer_resolution(distances, weightless)
         yield (
             f"{weightless.sum()} of {deform.sum()} joints that deform get no weight: "
-            f"{_names(rig, weightless)}"
+            f"{rig.skeleton.listed(weightless)}"
             + f". Bones are shorter than a lattice cell: choose a resolution of {finer}"
             * (finer > 0)
         )
@@ -158,9 +158,5 @@ def _blocked_by_locks(rig: Rig, graph: CutCellGraph, layers: Sequence[Layer]) ->
             yield (
                 f'the layer "{layer.title}"{place}{to} has no effect at '
                 f"{count(int(differs.any(axis=1).sum()), 'vertex')}: these joints are locked "
-                f"above it and keep the file's weights there: {_names(rig, keeping)}"
+                f"above it and keep the file's weights there: {rig.skeleton.listed(keeping)}"
             )
-
-
-def _names(rig: Rig, which: NDArray[np.bool_]) -> str:
-    return listed([rig.skeleton.names[j] for j in np.flatnonzero(which)])

@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from ..io.formats.gltf import SUFFIXES as GLTF
 from . import options as given
 from .console import for_people, print_result, progress_bars
 from .report import described, report_rows
@@ -41,7 +42,6 @@ EPILOG = """Examples:
 
 - `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
 
-GLTF = (".glb", ".gltf", ".vrm")
 GLTF_INFLUENCES = 4
 """Default number of influences saved in glTF, which is the number that engines read."""
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..io.formats import described
 from ..method import ANIMATION, METHODS, OPTIONS, PAPER, Method, method_of
 from ..options import Option
 from ..runtime.standard_output import output_errors
@@ -77,9 +78,7 @@ FixFile = Annotated[
 _RIG = typer.Argument(
     metavar="RIG",
     callback=_stdin,
-    help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
-    " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
-    " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it. - is standard input.",
+    help=f"A character: {described('read')}. - is standard input.",
 )
 RigFile = Annotated[Path, _RIG]
 OptionalRigFile = Annotated[Path | None, _RIG]
@@ -87,8 +86,8 @@ SkeletonFile = Annotated[
     Path | None,
     _option(
         FILES, "--skeleton", "FILE",
-        "File with the skeleton of a mesh that has no skin: .json, .glb, .gltf, .vrm, .fbx, .usd,"
-        " RigNet's .txt or .npz. Default: the .json of the same name next to the mesh.",
+        f"File with the skeleton of a mesh that has no skin: {described('read_skeleton')}. Default:"
+        " the .json of the same name next to the mesh.",
     ),
 ]  # fmt: skip
 Accessories = Annotated[

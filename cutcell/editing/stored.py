@@ -16,6 +16,7 @@ from .. import __version__
 from ..errors import FileError, ParameterError
 from ..io import save
 from ..io.files import naming
+from ..io.formats.gltf import SUFFIXES as GLTF
 from ..io.gltf.container import json_bytes, pack_glb, read_document
 from ..method import ANIMATION, Method
 from ..rig import Rig
@@ -28,7 +29,6 @@ from .layers.packing import naming as naming_part
 
 KEY = "cutcell"
 """Entry of a document's asset extras."""
-GLTF = (".glb", ".gltf", ".vrm")
 ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
 """Source of the numbers of a file, and their unit."""
 

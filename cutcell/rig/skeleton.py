@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import assign, shown
+from ...checks import assign, shown
 from ..errors import SkeletonError
+from ..runtime.display import listed
 from ..runtime.repr import Summarized
 from .checks import as_array, check_finite, frozen
 from .names import is_neutral
@@ -117,6 +118,10 @@ class Skeleton(Summarized):
                 '{"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
                 '{"name": "tip", "position": [0, 1, 0], "parent": "root"}]}'
             )
+
+    def listed(self, which: NDArray[np.bool_]) -> str:
+        """Return the names of some joints (j,), the first ones of many."""
+        return listed([self.names[j] for j in np.flatnonzero(which)])
 
     @cached_property
     def children(self) -> tuple[NDArray[np.intp], ...]:

@@ -4,20 +4,23 @@ from cutcell.rig.mesh import COUNTS, vertex_shares
 
 from .clips import ClipError, clip_error, motion_error
 from .crosstalk import Crosstalk, crosstalk, find_gaps
-from .definitions import DEFINITIONS, Definition, Measure, errors_by_definition
+from .definitions import DEFINITIONS, Definition, errors_by_definition
 from .deformation import TURNED, DeformationError, Turn, Turned, deformation_error, scene_error
 from .poses import PoseError, pose_error
+from .table import METRICS, Measured, Metric
 from .weight_error import precision_recall, unweighted, weight_l1
 
 __all__ = [
     "COUNTS",
     "DEFINITIONS",
+    "METRICS",
     "TURNED",
     "ClipError",
     "Crosstalk",
     "Definition",
     "DeformationError",
-    "Measure",
+    "Measured",
+    "Metric",
     "PoseError",
     "Turn",
     "Turned",

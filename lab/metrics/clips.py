@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose import linear_blend_skinning
-from cutcell.pose.skin import Gap
 from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
-from .deformation import CM2, check_fit, longest_side
-from .weight_error import checked_pair
+from .deformation import CM2, checked_fit, longest_side
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""
@@ -76,9 +75,7 @@ def clip_error(
     ParameterError
         An unknown `count`.
     """
-    rig.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, rig.mesh, rig.skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     share = vertex_shares(rig.mesh, count)
     errors = []
     for clip in rig.clips:
@@ -106,14 +103,18 @@ def squared_distances(
     return (difference * difference).sum(axis=1) / longest_side(mesh) ** 2
 
 
-def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[float, float, float]:
-    """Return the distances between two sets of weights while a clip plays, in the gap's unit.
+def motion_error(
+    clip: Clip,
+    lengths_in: Callable[[NDArray[np.float64]], NDArray[np.floating]],
+    progress: Progress = silent,
+) -> tuple[float, float, float]:
+    """Return the distances between two sets of weights while a clip plays.
 
     Parameters
     ----------
     clip : Clip
-        In the space of the gap's points.
-    gap : Gap
+    lengths_in : callable
+        Takes a pose (j, 4, 4) of the clip and returns the distance of each vertex, shape (n,).
     progress : callable
         See `cutcell.runtime.progress`.
 
@@ -129,7 +130,7 @@ def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[flo
     squares = greatest = most = 0.0
     for done, time in enumerate(times):
         progress("error", done / len(times))
-        lengths = gap.lengths(clip.sample(time))
+        lengths = lengths_in(clip.sample(time))
         squares += float(np.square(lengths).mean()) / len(times)
         greatest = max(greatest, float(lengths.max()))
         most = max(most, float(np.quantile(lengths, NEARLY_ALL)))

@@ -144,9 +144,7 @@ def deformation_error(
     Paper section 4.3.1.
     """
     mesh, skeleton = parts_of(rig)
-    skeleton.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, mesh, skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     degrees = check_number("degrees", degrees, 0, 180)
     turned = _checked_joints(joints, skeleton)
     share = vertex_shares(mesh, count)
@@ -205,14 +203,20 @@ def parts_of(rig: Rig | tuple[TriangleMesh, Skeleton]) -> tuple[TriangleMesh, Sk
     return rig
 
 
-def check_fit(weights: NDArray[np.float64], mesh: TriangleMesh, skeleton: Skeleton) -> None:
-    """Raise WeightsError unless the weights are for these vertices and joints."""
+def checked_fit(
+    rig: Rig | tuple[TriangleMesh, Skeleton], predicted: ArrayLike, reference: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return both as arrays (n, j) of weights for the vertices and joints of a rig."""
+    mesh, skeleton = parts_of(rig)
+    (rig if isinstance(rig, Rig) else skeleton).require_joints()
+    weights, targets = checked_pair(predicted, reference)
     expected = (len(mesh.vertices), len(skeleton.joints))
     if weights.shape != expected:
         raise WeightsError(
             f"the weights have the shape {weights.shape}, but the rig has {expected[0]} "
             f"vertices and {expected[1]} joints"
         )
+    return weights, targets
 
 
 def longest_side(mesh: TriangleMesh) -> float:

@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass, fields, replace
 from io import StringIO
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from cutcell.binding import Binding, bind
@@ -20,25 +19,26 @@ from cutcell.geodesics.fallback import REACHED
 from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
 from cutcell.method import ANIMATION, Method, MethodName, method_of
 from cutcell.rig import Rig
-from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
 from cutcell.weights.warm_up import warm_up
 
-from ..metrics import deformation_error, precision_recall, weight_l1
+from ..metrics import METRICS, Measured, Metric
 
 OPTIONS = tuple(field.name for field in fields(Method))
 """Options that can be swept."""
 
-MEASURES = {
-    "l1": "L1",
-    "precision": "precision",
-    "recall": "recall",
-    "deformation": "deformation cm²",
-    "unreachable": "unreachable",
-    "seconds": "seconds",
+
+def _unreachable(one: Measured) -> float:
+    return float(one.share @ (one.binding.distances.fallback != REACHED))
+
+
+MEASURES: dict[str, Metric] = {
+    **{name: METRICS[name] for name in ("l1", "precision", "recall", "deformation")},
+    "unreachable": Metric("unreachable", _unreachable),
+    "seconds": METRICS["seconds"],
 }
-"""The measures, fields of `SweepPoint`, and their names in tables."""
+"""The metrics by name; each is a field of `SweepPoint`."""
 
 
 @dataclass(frozen=True)
@@ -273,18 +273,5 @@ def measure_setting(
     WeightsError
         The reference does not fit the rig.
     """
-    share = vertex_shares(rig.mesh)
-    precision, recall = precision_recall(binding.weights, reference, share)
-    return SweepPoint(
-        value,
-        l1=weight_l1(binding.weights, reference, share),
-        precision=_number(precision),
-        recall=_number(recall),
-        deformation=deformation_error(rig, binding.weights, reference, progress=progress).mean,
-        unreachable=float(share @ (binding.distances.fallback != REACHED)),
-        seconds=float(sum(binding.seconds.values())),
-    )
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else value
+    measured = Measured(rig, binding.weights, reference, binding, progress=progress)
+    return SweepPoint(value, **measured.values(MEASURES))

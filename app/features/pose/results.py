@@ -123,7 +123,7 @@ RESULTS = (
         _motion,
         lambda rig, binding, blending, motion, clip, swung, progress: motion_error(
             clip_in_scene(rig, swung),
-            gap_between(rig, binding.weights, rig.weights, blending),
+            gap_between(rig, binding.weights, rig.weights, blending).lengths,
             progress,
         ),
         wanted=lambda state: state.panel == "pose" and state.heat,

@@ -25,7 +25,6 @@ from ..files import HALVES, Allowance, one_line, read_bytes, regular_file, whole
 
 MAGIC = b"glTF"
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
-ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
 BINARY_CHUNK = 0x004E4942
 
@@ -49,6 +48,11 @@ class Document:
         self._checked: dict[str, list[dict[str, Any]]] = {}
         self.forget()
         self.allow()
+
+    @property
+    def is_gltf(self) -> bool:
+        """Whether it was not made from another format."""
+        return self.surfaces is None
 
     def allow(self) -> None:
         """Reset the memory budget of reading by the present size."""

@@ -20,7 +20,6 @@ from ..weights import with_deform
 from .obj import parse_obj
 
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it writes tracebacks to terminals
-MESHES = (".obj", ".ply", ".stl", ".off")
 
 
 def read_soup(path: Path, bare: bool = False) -> Rig:

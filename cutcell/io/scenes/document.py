@@ -147,8 +147,6 @@ class _SceneBuilder(GltfBuilder):
             self.json["animations"] = clips
 
 
-USD = (".usd", ".usda", ".usdc", ".usdz")
-SCENES = (".fbx", *USD)
 FBX_BINARY = b"Kaydara FBX Binary"
 SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
 MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
@@ -160,9 +158,9 @@ READ = {
 }
 
 
-def read_scene(path: Path, accessories: bool = False) -> Rig:
-    """Load an FBX or USD file; see `cutcell.load`."""
-    kind, scene = _kind(path), scene_arrays(path)
+def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
+    """Load a file whose kind is "FBX" or "USD"; see `cutcell.load`."""
+    scene = scene_arrays(path, kind)
     document, world = scene_document(scene, path, f"cutcell, from {kind}")
     lost = (
         f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {READ[kind]} are read, with normals, "
@@ -181,9 +179,9 @@ def read_scene(path: Path, accessories: bool = False) -> Rig:
     return read_rig(document, world, accessories, why_bare)
 
 
-def scene_arrays(path: Path) -> Mapping[str, NDArray]:
+def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
     """Return the arrays of an FBX or USD file; see `document`."""
-    data, kind = read_bytes(path), _kind(path)
+    data = read_bytes(path)
     job = {"path": np.array(str(path.resolve()))}
     seconds, memory, extra = USD_SECONDS, USD_MEMORY, "cutcell[usd]"
     if kind == "FBX":
@@ -199,7 +197,3 @@ def scene_arrays(path: Path) -> Mapping[str, NDArray]:
         return run_isolated(task, job, seconds, who, memory, extra)
     except WorkFailedError as e:
         raise FileError(f"cannot be read as {kind}: {e}") from None
-
-
-def _kind(path: Path) -> str:
-    return "USD" if path.suffix.lower() in USD else "FBX"

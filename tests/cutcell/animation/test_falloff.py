@@ -123,8 +123,8 @@ def test_touching_parts_do_not_share_weight(demo_paths):
     for name in ("biped", "rabbit"):
         rig = cutcell.load(next(path for path in demo_paths if path.stem == name))
         score = compare([rig], ["cutcell_rig"]).rigs[0].scores[0]
-        assert score.crosstalk < 0.02, name
-        assert score.unweighted == 0
+        assert score.values["crosstalk"] < 0.02, name
+        assert score.values["unweighted"] == 0
 
 
 def test_weights_end():

@@ -30,8 +30,8 @@ def can_be_skinned(rig: Rig) -> bool:
     source = rig.source
     if not isinstance(source, BareSource):
         return False
-    if source.document.path.suffix.lower() not in (".glb", ".gltf"):
-        return False  # what was made of another format has no more than a new document
+    if not source.document.is_gltf:  # it has no more than a new document
+        return False
     if not np.array_equal(rig.mesh.vertices, source.mesh.vertices):
         return False
     return np.array_equal(rig.mesh.faces, source.mesh.faces) and all(

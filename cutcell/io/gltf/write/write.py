@@ -24,7 +24,7 @@ from ....rig import Rig
 from ...materials.gltf_colored import with_surface_looks
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
-from ..container import ENDINGS, Document, beside, json_bytes, pack_glb
+from ..container import Document, beside, json_bytes, pack_glb
 from ..influences import pack_influences, store_deform, store_influences, take_influences
 from ..read.read import GltfSource, StoredPart
 from .faces import take_faces
@@ -43,10 +43,10 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     faces = take_faces(document, rig)
     parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped = [new.old for new in (*faces, *moves) if new.old is not None]
-    changed, is_gltf = [], source.document.path.suffix.lower() in ENDINGS  # not FBX or USD
+    changed = []
     for part, saved in zip(source.parts, parts, strict=True):
         _check_reachable(rig, saved)
-        rows = stored_rows(rig, part, saved) if is_gltf else None
+        rows = stored_rows(rig, part, saved) if source.document.is_gltf else None
         if rows is None or not rows.is_same.all():
             primitives = [document["meshes"][m]["primitives"][k] for m, k in saved.primitives]
             old: dict[str, int] = {}

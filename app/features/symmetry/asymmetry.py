@@ -1,14 +1,12 @@
 """Difference of weights between a vertex and its mirror image, over the whole body."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..editing.symmetry import (
+from cutcell.editing.symmetry import (
     MIN_SHARE,
     Mirror,
     find_mirror,
@@ -16,10 +14,10 @@ from ..editing.symmetry import (
     mesh_diagonal,
     reflected,
 )
-from ..errors import MeshError
-from ..geometry.triangles import closest_on_triangle
-from ..rig import Rig, TriangleMesh
-from ..runtime.progress import Progress, silent
+from cutcell.errors import MeshError
+from cutcell.geometry.triangles import closest_on_triangle
+from cutcell.rig import Rig, TriangleMesh
+from cutcell.runtime.progress import Progress, silent
 
 NEAR = 0.02
 """Bounding-box diagonals: skin that is farther from the mirrored surface has no mirror image."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from ..cutcell_graph import CutCellGraph
+from cutcell.graph import CutCellGraph
 
 NEAREST = 16
 """Nodes that each value is fitted to."""

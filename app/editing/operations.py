@@ -5,8 +5,6 @@ their weight, no vertex gets a joint that it may not follow (`Rig.allowed`), and
 that leaves nobody stays as it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -15,12 +13,13 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, hstack, vstack
 from scipy.spatial import cKDTree
 
-from ..checks import check_choice, check_integer, check_number
-from ..errors import ParameterError, WeightsError
-from .layers.contents import MAX_STEPS
+from cutcell.checks import check_choice, check_integer, check_number
+from cutcell.editing.layers.contents import MAX_STEPS
+from cutcell.editing.selections.neighbours import STEP, Neighbours
+from cutcell.editing.symmetry import Mirror, reflected
+from cutcell.errors import ParameterError, WeightsError
+
 from .selected import Selected
-from .selections.neighbours import STEP, Neighbours
-from .symmetry import Mirror, reflected
 
 INNER_SWEEPS = 4
 """Sweeps over the nodes inside the body to one over its vertices: a path from one shell to another

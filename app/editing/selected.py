@@ -1,7 +1,5 @@
 """Vertices whose weights are to be changed, and the limits of these weights."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
-from ..rig import Rig
-from .locks import joint_index
+from cutcell.editing.locks import joint_index
+from cutcell.errors import ParameterError
+from cutcell.rig import Rig
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from ...geometry.triangles import face_edges
-from ...rig import TriangleMesh
-from ..winding import winding_number
+from cutcell.geometry.triangles import face_edges
+from cutcell.graph.winding import winding_number
+from cutcell.rig import TriangleMesh
 
 MARGIN = 0.04
 """Margin around the body, relative to its longest side."""

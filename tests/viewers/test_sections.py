@@ -5,7 +5,8 @@ import pytest
 import trimesh
 
 from cutcell import TriangleMesh, build_graph, winding_number
-from cutcell.graph.sections import interpolate, plane_section
+from cutcell_viewers.interpolation import interpolate
+from cutcell_viewers.plane_section import plane_section
 
 OBLIQUE = np.array([0.36, 0.48, 0.8])
 

@@ -7,8 +7,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
-from .dual_quaternions import blended, rotated
+from cutcell.pose.dual_quaternions import blended
 
 MAX_INFLUENCES = 8
 Blending = Literal["linear", "dual"]
@@ -74,7 +75,8 @@ class Skin:
         normals, pose = np.asarray(normals, float), np.array(pose, float)
         pose[:, :3, 3] = 0
         if blending == "dual":
-            result = rotated(blended(normals, self.joints, self.weights, pose)[1], normals)
+            turns = blended(normals, self.joints, self.weights, pose)[1]
+            result = Rotation.from_quat(turns).apply(normals)
         else:
             result = self.move(normals, pose)
         length = np.linalg.norm(result, axis=1, keepdims=True)

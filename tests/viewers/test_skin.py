@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cutcell import forward_kinematics, linear_blend_skinning
-from cutcell.pose.skin import MAX_INFLUENCES, Skin
+from cutcell_viewers.skin import MAX_INFLUENCES, Skin
 from tests.viewers.arm import arm_rig
 
 

@@ -1,7 +1,5 @@
 """Conditions on vertices, such as `weight of hand.L > 0.1 and distance > 0.3`."""
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable
@@ -11,12 +9,12 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...checks import LONG, shown
-from ...errors import ParameterError, WeightsError
-from ...geodesics import BoneDistances
-from ...rig import Rig
-from ..locks import joint_index
-from .neighbours import Neighbours
+from cutcell.checks import LONG, shown
+from cutcell.editing.locks import joint_index
+from cutcell.editing.selections import Neighbours
+from cutcell.errors import ParameterError, WeightsError
+from cutcell.geodesics import BoneDistances
+from cutcell.rig import Rig
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 40
