@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import assign
+from ..checks import assign
 from ..errors import ParameterError
 from .transforms import composed, relative
 

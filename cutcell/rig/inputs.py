@@ -7,7 +7,7 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import shown
+from ..checks import shown
 from ..errors import CutcellError, MeshError, SkeletonError
 from .mesh import TriangleMesh
 from .rig import Rig

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import assign, check_choice
+from ..checks import assign, check_choice
 from ..errors import MeshError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..runtime.repr import Summarized

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import assign
+from ..checks import assign
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
 from ..runtime.repr import Summarized

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import assign, shown
+from ..checks import assign, shown
 from ..errors import SkeletonError
 from ..runtime.display import listed
 from ..runtime.repr import Summarized
