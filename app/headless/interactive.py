@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from panel.io.resources import DIST_DIR
 
 from cutcell import Binding, bind
+from cutcell.checks import check_choice
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_choice
 from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
-from ..rig.checks import check_choice
 
 LONGEST = 20.0
 """Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..bones.bones import Bones, Sources, least_of_joints, per_joint
+from ..checks import check_integer, check_number
 from ..errors import ParameterError, SkeletonError
 from ..graph import CutCellGraph
 from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
-from ..rig.checks import check_integer, check_number, check_positions
+from ..rig.checks import check_positions
 from ..rig.inputs import SkeletonLike, as_skeleton
 from ..rig.rig import check_units
 from ..runtime.progress import Progress, silent

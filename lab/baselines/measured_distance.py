@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from cutcell.bones.bones import per_joint
+from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_path
 from cutcell.geodesics.fallback import why_not_reached
@@ -23,7 +24,6 @@ from cutcell.geometry.segments import closest_on_segment, distance_to_segment
 from cutcell.graph import CutCellGraph, build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress
 
 from .body import Body
