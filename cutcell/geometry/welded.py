@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .boundary import Boundary, boundary_of
+from .dissection import Dissection, dissect
 from .edges import MeshEdges, find_edges
 from .laplacian import stiffness, vertex_areas, vertex_normals
 from .triangles import areas, label_components
@@ -113,6 +114,11 @@ class WeldedMesh:
         rows: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
         rows = stiffness(self.points, self._whole_faces)
         return rows
+
+    @cached_property
+    def dissection(self) -> Dissection:
+        """Order in which equations with such rows are solved."""
+        return dissect(*self.stiffness[:2])
 
     @property
     def _whole_faces(self) -> NDArray[np.int32]:

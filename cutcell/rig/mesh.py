@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign, check_choice
 from ..errors import MeshError
 from ..geometry.weld import weld
 from ..geometry.welded import WeldedMesh
 from ..runtime.repr import Summarized
-from .checks import LARGEST, as_array, assign, check_choice, check_finite, check_positions, frozen
+from .checks import LARGEST, as_array, check_finite, check_positions, frozen
 
 COUNTS = ("welded", "vertices")
 

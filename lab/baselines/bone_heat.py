@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
+from cutcell.checks import check_number
 from cutcell.geometry.laplacian import cotangent_laplacian
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_number
 
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by

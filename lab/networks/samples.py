@@ -170,8 +170,8 @@ class _Welded:
 
     @classmethod
     def of(cls, rig: Rig) -> _Welded:
-        used, faces = np.unique(rig.mesh.welded.faces, return_inverse=True)
-        faces = faces.reshape(-1, 3).astype(np.int32)
+        used, corners = np.unique(rig.mesh.welded.faces, return_inverse=True)
+        faces = np.asarray(corners.reshape(-1, 3), np.int32)
         vertices = rig.mesh.welded.first[used].astype(np.int64)
         places = rig.mesh.vertices[vertices]
         return cls(places / longest_side(rig.mesh), faces, mesh_normals(places, faces)[1], vertices)
