@@ -1,1 +1,1 @@
-"""Primitives of triangle meshes: edges, welding, normals, Laplacian, orders."""
+"""Triangle meshes: welded meshes and what follows from them, lines that hit them, orders."""
