@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.checks import check_flag, check_integer, shown
-from cutcell.editing.symmetry import joint_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig
 from cutcell.rig.checks import as_array
 
+from .mirror import joint_mirror
 from .stroke import Brush, PaintSurface, Stroke
 
 MAX_INFLUENCES = 2**15

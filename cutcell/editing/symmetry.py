@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
-from ..errors import MeshError, SkeletonError
+from ..errors import MeshError
 from ..geometry.welded import WeldedMesh
 from ..rig import Rig, Skeleton
 from ..rig.names import plain
@@ -56,38 +56,13 @@ def find_mirror(rig: Rig) -> Mirror:
         vertex = _vertex_partners(near, welded)
         score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
         if score > share:
-            best, share = _mirror(rig, axis, position, vertex, joint), score
+            best, share = with_set_pairs(rig, axis, position, vertex, joint), score
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
     if best is None or matched < MIN_SHARE:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: at best {matched:.0%} of its vertices "
             "have a partner on the other side of a left and a right joint; bind it without "
             "symmetry"
-        )
-    return best
-
-
-def joint_mirror(rig: Rig) -> Mirror:
-    """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
-
-    Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
-    """
-    joints = rig.skeleton.joints
-    if not len(joints):
-        raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
-    best, share, matched = None, 0.0, 0.0
-    tolerance = JOINT_TOLERANCE * mesh_diagonal(rig)
-    for axis, position, joint in mirror_planes(rig):
-        gap = reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
-        exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / tolerance
-        score = float((joint >= 0).mean()) + 0.1 * exact
-        if score > share:
-            share, matched = score, float((joint >= 0).mean())
-            best = _mirror(rig, axis, position, np.empty(0, np.intp), joint)
-    if best is None or matched < MIN_SHARE:
-        raise SkeletonError(
-            f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
-            "joints have a partner on the other side"
         )
     return best
 
@@ -205,7 +180,7 @@ def _partners_there(
     return np.where((partner >= 0) & ((parents[partner] == above) | named), partner, -1)
 
 
-def _mirror(
+def with_set_pairs(
     rig: Rig, axis: int, position: float, vertex: NDArray[np.intp], there: NDArray[np.intp]
 ) -> Mirror:
     """Add pairs that a person set, and pairs of names that are elsewhere, to those (j,) there."""

@@ -10,7 +10,6 @@ from cutcell.editing.symmetry import (
     MIN_SHARE,
     Mirror,
     find_mirror,
-    joint_mirror,
     mesh_diagonal,
     reflected,
 )
@@ -18,6 +17,7 @@ from cutcell.errors import MeshError
 from cutcell.rig import Rig, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
 
+from ...editing import joint_mirror
 from .closest import closest_on_triangle
 
 NEAR = 0.02
