@@ -15,7 +15,7 @@ WORKERS := --numprocesses logical --maxprocesses 4
 
 # Results of these could depend on how a processor rounds.
 NUMERICAL := $(addprefix tests/lab/,baselines metrics) $(addprefix tests/cutcell/,diagnosis editing geodesics \
-	geometry graph pose rig templates weights test_bind.py)
+	geometry graph pose rig templates weights animation bones binding)
 # All that numpy would use beyond its baseline.
 SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"]["found"])
 

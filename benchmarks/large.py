@@ -3,7 +3,7 @@
 python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--exact 2] [--markdown OUT]
 
 The rig's triangles are quartered again and again. Weights of many vertices come from coarser meshes
-(`cutcell/weights/rig_falloff/diffusion.py`); the exact weights are those by factors of the whole
+(`cutcell/animation/falloff/diffusion.py`); the exact weights are those by factors of the whole
 matrix, from the same distances. `diagnose` checks the rig with its new weights.
 """
 
@@ -20,9 +20,8 @@ import numpy as np
 import trimesh
 
 import cutcell
+from cutcell.animation.falloff import diffusion
 from cutcell.geometry.weld import weld
-from cutcell.weights.rig_falloff import diffusion
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from cutcell_lab.benchmarks.rigs import ROOT
 from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
@@ -44,12 +43,12 @@ def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
 def exact_weights(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights, before they are pruned, by factors of the whole matrix."""
     with patch.object(diffusion, "MIN_COARSENING", 0):
-        return unpruned(binding, SurfaceOperators.of(binding.graph))
+        return unpruned(binding)
 
 
-def unpruned(binding: cutcell.Binding, surface: SurfaceOperators) -> np.ndarray:
+def unpruned(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights of all joints that distances were measured from."""
-    return cutcell.skinning_weights(binding.distances, surface=surface, threshold=0)
+    return cutcell.skinning_weights(binding.distances, threshold=0)
 
 
 @dataclass
@@ -83,7 +82,7 @@ def measure(rig: cutcell.Rig, is_compared: bool) -> Measured:
     diagnosis = perf_counter() - begin
     difference = None
     if is_compared:
-        outcome = unpruned(binding, SurfaceOperators.of(binding.graph))
+        outcome = unpruned(binding)
         difference = np.abs(outcome - exact_weights(binding))
     sizes = len(rig.mesh.faces), binding.seconds
     return Measured(*sizes, processor, peak, diagnosis, difference)

@@ -18,18 +18,19 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.io import SAVED, is_avatar, keeps_document
+from cutcell.io import is_avatar, keeps_document
+from cutcell.io.formats import GLTF, suffixes
+from cutcell.io.formats.rignet import word_names
 from cutcell.io.gltf.container import Document
 from cutcell.io.gltf.read.accessors import read_accessor
 from cutcell.io.gltf.read.read import GltfSource
 from cutcell.io.materials.transfer import has_materials
-from cutcell.io.rignet import word_names
 from cutcell_lab.benchmarks.rigs import ROOT, SHARED
 from cutcell_lab.benchmarks.tables import Table, publish
 from tests.gltf_validator.validator import reports
 
 SEVERITIES = ("error", "warning", "information", "hint")
-GLTF = (".glb", ".gltf", ".vrm")
+SAVED = suffixes("write")
 SINGLE = 2e-7
 """Largest difference of weights that are stored as float32."""
 READ = ("*.glb", "*.gltf", "*.vrm", "*.fbx", "*.usd*", "*.npz", "*.txt")

@@ -1,3 +1,4 @@
+from . import binding as binding
 from . import diagnosis as diagnosis
 from . import editing as editing
 from . import errors as errors
@@ -10,6 +11,10 @@ from . import rig as rig
 from . import templates as templates
 from . import weights as weights
 from .binding import Binding as Binding
+from .binding import Explanation as Explanation
+from .binding import JointShare as JointShare
+from .binding import bind as bind
+from .binding import explain as explain
 from .diagnosis import Cleaned as Cleaned
 from .diagnosis import Diagnosis as Diagnosis
 from .diagnosis import Finding as Finding
@@ -19,20 +24,16 @@ from .diagnosis import diagnose as diagnose
 from .editing import Attached as Attached
 from .editing import Computed as Computed
 from .editing import Edits as Edits
-from .editing import Explanation as Explanation
 from .editing import Filled as Filled
 from .editing import FromFile as FromFile
 from .editing import JointEdit as JointEdit
-from .editing import JointShare as JointShare
 from .editing import Layer as Layer
 from .editing import Locked as Locked
 from .editing import Mask as Mask
 from .editing import Mirrored as Mirrored
 from .editing import Painted as Painted
 from .editing import Smoothed as Smoothed
-from .editing import bind as bind
 from .editing import edited_rig as edited_rig
-from .editing import explain as explain
 from .editing import refine_weights as refine_weights
 from .errors import Cancelled as Cancelled
 from .errors import CutcellError as CutcellError

@@ -40,10 +40,13 @@ TORCH = [
     if re.search(r"^(import|from) torch\b", path.read_text(encoding="utf-8"), re.MULTILINE)
 ]
 """Files that import torch at once."""
-# Each package of the core uses only those before it.
+# Each package of the core uses only those before it. The method for animation is one folder, and
+# each stage of a binding uses one part of it.
 ORDER = (
-    "errors", "runtime", "geometry", "rig", "method", "isolated", "io", "graph", "geodesics",
-    "pose", "weights", "binding", "editing", "templates", "diagnosis", "cli", "__main__",
+    "errors", "checks", "options", "animation.declaration", "method", "runtime", "geometry", "rig",
+    "isolated", "io", "graph", "bones", "animation.any_angle", "animation.bone_extents",
+    "geodesics", "pose", "animation.falloff", "weights", "editing", "binding", "templates",
+    "diagnosis", "cli", "__main__",
 )  # fmt: skip
 MAX_ROOT_ENTRIES = 24
 MAX_FILES = 15
@@ -137,26 +140,48 @@ def test_no_import_anywhere_points_upwards(package, forbidden):
     assert wrong == []
 
 
-def core_parts() -> dict[str, set[Path]]:
-    """Return the files of each package or module at the root of the core."""
-    parts: dict[str, set[Path]] = {}
-    for path in (ROOT / "cutcell").rglob("*.py"):
-        part = path.relative_to(ROOT / "cutcell").parts[0].removesuffix(".py")
-        parts.setdefault(part, set()).add(path)
-    del parts["__init__"]  # imports on first use
-    return parts
+def part_of(module: str) -> str:
+    """Return the part of the core, one of `ORDER`, that a module belongs to."""
+    below = module.removeprefix("cutcell.")
+    return next((part for part in ORDER if f"{below}.".startswith(f"{part}.")), below)
 
 
 def test_packages_of_the_core_use_only_those_before_them():
-    parts = core_parts()
-    assert set(parts) == set(ORDER)
+    roots = {ROOT / "cutcell/__init__.py", ROOT / "cutcell/animation/__init__.py"}
+    modules = {path: ".".join((*package_of(path), path.stem)) for path in core_files()}
+    parts = {path: part_of(name) for path, name in modules.items() if path not in roots}
+    assert set(parts.values()) == set(ORDER)
     rank = {part: number for number, part in enumerate(ORDER)}
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
-        for part, paths in parts.items()
-        for path in sorted(paths)
+        for path, part in parts.items()
         for name, line in imports_of(path)
-        if name.startswith("cutcell.") and rank[name.split(".")[1]] > rank[part]
+        if name.startswith("cutcell.") and rank[part_of(name)] > rank[part]
+    ]
+    assert wrong == []
+
+
+def test_the_method_of_the_paper_reads_alone():
+    """Few modules choose between it and the method for animation; no other one knows the latter."""
+    choosing = {
+        ROOT / "cutcell" / name
+        for name in (
+            "geodesics/solver.py",
+            "geodesics/moved.py",
+            "geodesics/tracing/inside.py",
+            "weights/skinning_weights.py",
+        )
+    }
+    stages = [
+        path
+        for part in ("graph", "bones", "geodesics", "weights")
+        for path in (ROOT / "cutcell" / part).rglob("*.py")
+    ]
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {name}"
+        for path in sorted(set(stages) - choosing)
+        for name, line in imports_of(path)
+        if name.startswith("cutcell.animation")
     ]
     assert wrong == []
 

@@ -14,7 +14,8 @@ import cutcell_lab
 from tests.conftest import ROOT
 
 PACKAGES = [
-    *(f"cutcell.{name}" for name in ("io", "graph", "geodesics", "weights", "editing", "pose")),
+    *(f"cutcell.{name}" for name in ("io", "graph", "geodesics", "weights", "editing")),
+    *(f"cutcell.{name}" for name in ("binding", "pose")),
     "cutcell_lab.metrics",
     "cutcell_lab.baselines",
 ]

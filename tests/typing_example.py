@@ -153,6 +153,7 @@ def careful(path: Path) -> str:
 
 MODULES = (
     cutcell_lab.dataset,
+    cutcell.binding,
     cutcell.diagnosis,
     cutcell.errors,
     cutcell.graph,

@@ -10,11 +10,11 @@ from scipy.sparse.csgraph import connected_components
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.triangles import normals
 from cutcell.geometry.weld import weld
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig, TriangleMesh
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes
+from .skin import Skin
 
 CREASE = np.cos(np.radians(45))
 """Faces that meet at a sharper angle than this keep their edge."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import FaceColors
-from cutcell.pose.skin import Blending, Skin
 from cutcell.runtime.repr import Summarized
 
 from .palette import BODY, Color
+from .skin import Blending, Skin
 
 if TYPE_CHECKING:
     from pyvista import DataSet

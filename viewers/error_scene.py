@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cutcell.pose.skin import Blending, Gap, Skin
 from cutcell.rig import Rig
 
 from .character import character, pose_in_scene, to_scene
 from .description import Apart, Description, Legend
+from .skin import Blending, Gap, Skin
 
 FLOOR = 3.0
 """Least end of the scale in millimetres: less would not be visible."""

@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import Finding
 from cutcell.pose import rotate_joint
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 
 from .camera import FRONT, Camera, framing
@@ -13,6 +12,7 @@ from .character import diagonal, pose_in_scene, to_scene
 from .description import Actor, Description
 from .marks import beads
 from .palette import MARK
+from .skin import Skin
 
 MAX_BEADS = 4000
 """Largest number of marked vertices; of more, evenly spaced ones are marked."""

@@ -11,18 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.bones.bones import Sources
+from cutcell.bones.nearest import NodeTree
 from cutcell.geodesics import Bones
-from cutcell.geodesics.bones import Sources
-from cutcell.geodesics.nearest import NodeTree
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
 from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph
-from cutcell.graph.sections import RaySlice, plane_outline, slice_rays
+from cutcell.graph.sections import RaySlice, slice_rays
 from cutcell.method import Method
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .distance_scene import unit_of
+from .plane_section import plane_outline
 from .slice_scene import file_axis, slice_place
 
 MAX_NODES = 2000

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 
 from .character import OCTAHEDRON, bone_frames, diagonal, smooth_normals, to_scene
 from .description import Actor
 from .palette import MARK
+from .skin import Skin
 
 DOT = 4.0
 """Width of the marks of many vertices, in pixels of the screen."""

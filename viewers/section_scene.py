@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cutcell.graph import CutCellGraph
-from cutcell.graph.sections import PlaneSection, interpolate, plane_section
 from cutcell.rig import Rig, TriangleMesh
 
 from .character import from_scene, in_scene
 from .description import Actor, Cut, Legend, Reading
 from .distance_scene import distance_look
+from .interpolation import interpolate
 from .palette import INTERIOR, Theme
+from .plane_section import PlaneSection, plane_section
 
 COARSEST, FINEST = 72, 128
 """Triangles of a section along the longest side of the body."""

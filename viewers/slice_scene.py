@@ -4,13 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.graph import Lattice
-from cutcell.graph.sections import RaySlice, plane_outline
+from cutcell.graph.sections import RaySlice
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
 from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
+from .plane_section import plane_outline
 
 INSIDE, DROPPED = 0.13, 0.045
 """Thickness of kept and dropped segments, in cells of the lattice."""

@@ -1,4 +1,4 @@
-"""Edits that only the page offers: brush strokes, joints centred in limbs, mirrored joints."""
+"""Edits that only the page offers: brush strokes, operations on selections, joints in limbs."""
 
 from cutcell.editing.symmetry import joint_mirror
 

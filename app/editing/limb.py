@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer
 from cutcell.errors import SkeletonError
-from cutcell.graph.sections import plane_outline
 from cutcell.graph.winding import winding_number
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.checks import check_integer
+from cutcell_viewers.plane_section import plane_outline
 
 DIRECTIONS = 96
 """In the plane across the limb, in which the skin is looked for."""

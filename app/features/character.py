@@ -8,7 +8,6 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.camera import Camera, framing
@@ -18,6 +17,7 @@ from cutcell_viewers.graph_scene import cut_at
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, Theme, to_hex
+from cutcell_viewers.skin import Skin
 
 from ..derive.memo import Memo
 from ..document.state import PANELS, State

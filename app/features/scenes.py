@@ -5,9 +5,9 @@ from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
-from cutcell.pose.skin import Skin
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
+from cutcell_viewers.skin import Skin
 
 from ..derive.memo import Memo
 from ..document.state import PANELS, State

@@ -3,9 +3,9 @@
 import shlex
 from dataclasses import dataclass
 
+from cutcell.binding.resolution import method_per_character
 from cutcell.cli.options import METHOD_OPTIONS
 from cutcell.editing import Edits
-from cutcell.geodesics.bone_extents.skins import method_per_character
 from cutcell.method import Method
 from cutcell.rig import Rig
 

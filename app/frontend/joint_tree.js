@@ -51,9 +51,9 @@ export function render({model}) {
   const group = {role: "group", label: "Doubtful joints"}
   const doubts = element("div", {className: "doubts", aria: group})
   const title = "Space or click: deforms or not. Arrows walk, open and close."
-  const root = element("div", {}, styled(),
+  const root = element("div", {}, styled(), doubts,
     element("div", {className: "head", title}, span("", "✓ deforms"), span("", "% of the skin")),
-    list, doubts, element("div", {id: "how", hidden: true},
+    list, element("div", {id: "how", hidden: true},
       "Enter chooses, Space lets a joint carry weight or not"))
   let forest = new Forest([], new Set())
   let names = ""
@@ -79,11 +79,11 @@ export function render({model}) {
     return made
   }
 
-  const doubtful = ({joint, name, short, why, carries}) => element("label", {className: "item"},
-    element("input", {
+  const doubtful = ({joint, name, short, why, carries, ours}) => element("label",
+    {className: "item"}, element("input", {
       type: "checkbox", checked: carries, aria: {role: "switch", label: `${name} deforms the mesh`},
       on: {change: (e) => model.send_msg({type: "carry", joint, on: e.target.checked})},
-    }), nameElement(short), span("why", why))
+    }), nameElement(short), span("why", why), span("share", percent(ours)))
 
   let most = 1
   const fill = () => {
@@ -94,8 +94,10 @@ export function render({model}) {
     if (now !== names && model.chosen >= 0) { forest.reveal(model.chosen) }
     names = now
     most = Math.max(1e-9, ...rows.map(({ours, file}) => Math.max(ours ?? 0, file ?? 0)))
-    const listed = rows.filter((row) => row.doubtful).map(doubtful)
-    doubts.replaceChildren(...listed.length ? [span("head", "Doubtful joints"), ...listed] : [])
+    const listed = rows.filter((row) => row.doubtful).sort((a, b) => (b.ours ?? 0) - (a.ours ?? 0))
+    const head = element("div", {className: "head"},
+      span("", "Doubtful joints"), span("", "% of the skin"))
+    doubts.replaceChildren(...listed.length ? [head, ...listed.map(doubtful)] : [])
     draw(held)
   }
   const draw = (held) => {

@@ -162,7 +162,7 @@ def _describe(
     rig: Any, chosen: list[Any], has_resolution: bool, rate: int | None, progress: Any
 ) -> tuple[tuple[Any, ...], list[str]]:
     """Return the scene of each of some choices, or all scenes of a sweep, and the warnings."""
-    from cutcell.editing import bind
+    from cutcell.binding import bind
 
     from .. import headless as scenes
 
@@ -196,10 +196,10 @@ def _write_page(
     skeleton: Path | None,
     quiet: bool,
 ) -> None:
-    from cutcell.editing import bind
+    from cutcell.binding import bind
+    from cutcell.checks import check_choice
     from cutcell.io import load
     from cutcell.io.files import naming
-    from cutcell.rig.checks import check_choice
     from cutcell.runtime.writing import check_place, write_all
 
     from . import bone_index

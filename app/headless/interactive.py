@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from panel.io.resources import DIST_DIR
 
 from cutcell import Binding, bind
+from cutcell.checks import check_choice
 from cutcell.geodesics import FALLBACK_REASONS
-from cutcell.pose.skin import Skin
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing
@@ -31,6 +30,7 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, to_hex
+from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import MIXED
 
 from ..document.state import State
@@ -119,8 +119,7 @@ def page_in_one_file(
 
 def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
     """Return all messages of the page: of each joint, view and clip."""
-    distances = binding.distances.all_joints(progress)
-    complete = replace(binding.distances, of_vertices=distances)
+    complete = binding.distances.of_all_joints(progress)
     state, memo = State(rig=rig, binding=replace(binding, distances=complete)), Memo()
     limit = MAX_CLIP_NUMBERS // max(len(rig.clips), 1)
     clips = [(shown_name(clip.name), clip_part(state, clip, limit)) for clip in rig.clips]
@@ -136,7 +135,7 @@ def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
         **_joints(state, memo, progress),
         "clips": [{"name": name, "clip": part} for name, part in clips if part],
         "mark": _message(Description({"vertex": vertex_mark(rig, 0, binding.weights)})),
-        **_facts(rig, binding, distances),
+        **_facts(rig, binding, complete.joint),
     }
 
 

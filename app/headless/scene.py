@@ -8,7 +8,6 @@ from cutcell.errors import ParameterError
 from cutcell.pose import pose_at
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress, silent
-from cutcell_lab.metrics import motion_error
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import gap_between
@@ -20,6 +19,7 @@ from ..document.state import State
 from ..features.compare import results as compare
 from ..features.distance import results as distance
 from ..features.graph import results as graph
+from ..features.pose.errors import motion_error
 from ..features.scenes import following, resolve
 from ..features.sweep import sweep_scenes
 from ..features.symmetry import results as symmetry

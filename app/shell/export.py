@@ -162,7 +162,7 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
             tables["weights"] = binding.weights
         if what != "weights":
             unit = binding.graph.lattice.size
-            tables["distances"] = binding.distances.all_joints(progress).T * unit
+            tables["distances"] = binding.distances.of_all_joints(progress).joint.T * unit
         check = partial(progress, "writing the numbers", 0.0)
         save = partial(save_numbers, path, named, settings=settings_of(binding), **tables)
         in_process(save, check=check, ended=ENDED)
@@ -193,7 +193,8 @@ def export_bound(session: Session, done: Done) -> None:
         state.message = ("info", "There are no weights to download yet.")
         return
     rig = state.rig.with_weights(state.binding.weights)
-    settings = settings_with_layers(state.rig, state.binding, state.edits)
+    binding = state.binding
+    settings = settings_with_layers(state.rig, binding.method, binding.weights, state.edits)
 
     def write(path: Path, progress: Progress) -> None:
         check = partial(progress, "writing the file", 0.0)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing.binding_warnings import SAME
+from cutcell.binding.warnings import SAME
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.runtime.display import count

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.pose.skin import Skin
 from cutcell.runtime.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
 from cutcell_viewers.lighting import shading
 from cutcell_viewers.palette import colormap, to_hex
+from cutcell_viewers.skin import Skin
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:

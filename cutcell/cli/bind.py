@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from ..io.formats import GLTF
 from . import options as given
 from .console import for_people, print_result, progress_bars
 from .report import described, report_rows
@@ -41,7 +42,6 @@ EPILOG = """Examples:
 
 - `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
 
-GLTF = (".glb", ".gltf", ".vrm")
 GLTF_INFLUENCES = 4
 """Default number of influences saved in glTF, which is the number that engines read."""
 
@@ -71,7 +71,7 @@ def bind(
     vertex, so that a hand next to a hip does not follow the hip. The paths are found in a
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
-    from ..editing import bind as compute
+    from ..binding import bind as compute
     from ..editing import edited_rig, stored
     from ..editing.refine import refinement
     from ..io import check_output, load, save, saving_notes
@@ -119,7 +119,9 @@ def bind(
     result = loaded.with_weights(binding.weights)
     if edits is not None and out.suffix.lower() in GLTF:
         touched = refinement(loaded, **touches)
-        settings = stored.settings_with_layers(loaded, binding, edits, touched)
+        settings = stored.settings_with_layers(
+            loaded, binding.method, binding.weights, edits, touched
+        )
         files = stored.save_bound(out, result, settings)
     else:
         files = save(out, result)
@@ -160,14 +162,14 @@ def _limited(
     rig: Rig, binding: Binding, edits: Edits | None, touches: dict[str, Any]
 ) -> tuple[Binding, list[str]]:
     """Limit the influences to those of glTF; return a warning about the dropped weight."""
+    from ..binding.bind import limit_influences
     from ..editing import Edits
-    from ..editing.bind import weighed_again
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
     if most <= GLTF_INFLUENCES:
         return binding, []
-    limited = weighed_again(
+    limited = limit_influences(
         rig, binding, edits or Edits(), max_influences=GLTF_INFLUENCES, **touches
     )
     dropped = every.sum(axis=1, where=limited.weights == 0)

@@ -15,7 +15,7 @@ from .console import for_people, print_json, print_warnings, progress_bars
 from .options import Json, LayersFile, RigFile, SkeletonFile, layered_method, with_method
 
 if TYPE_CHECKING:
-    from ..editing import Explanation, JointShare
+    from ..binding import Explanation, JointShare
 
 EPILOG = """Examples:
 
@@ -52,7 +52,7 @@ def explain(
     The table lists for each joint the distance and its path, the factors of the falloff, the
     weight after each step, and the weight in the file.
     """
-    from ..editing import explain as compute
+    from ..binding import explain as compute
     from ..editing.stored import load_edits, with_base
     from ..io import load
 
@@ -73,7 +73,7 @@ def explain(
 
 
 def _print(heading: str, explanation: Explanation, joint: str | None) -> None:
-    from ..editing.explain import STEPS
+    from ..binding.absence import STEPS
 
     console = Console(highlight=False)
     place = ", ".join(f"{x:.4g}" for x in explanation.position)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from ..method import STAGE_OPTIONS
 from . import options as given
 from .console import for_people, print_result, progress_bars
 from .report import described, report_rows
@@ -17,7 +18,7 @@ EPILOG = """Examples:
 
 - `cutcell graph character.glb --json | jq .graph.edges.total`"""
 
-GRAPH_OPTIONS = ("resolution", "connectivity", "winding_threshold", "orient", "samples", "leaf")
+GRAPH_OPTIONS = STAGE_OPTIONS["graph"] + STAGE_OPTIONS["distances"]
 """Options of the method that graph and distances depend on."""
 
 
@@ -37,24 +38,29 @@ def graph(
     Counts nodes and edges (of the mesh, inside, on the surface), connected components,
     and the share of vertices that no bone reaches through the graph.
     """
-    from ..binding import binding_steps
+    from ..binding.stages import measure, timed
+    from ..editing import Computed
+    from ..graph import build_graph
     from ..io import load
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
-    from ..weights.context import Context, run
 
     how = given.chosen_method(options)
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
-    steps = binding_steps(loaded, how)[: 2 if len(loaded.skeleton.joints) else 1]
+    seconds: dict[str, float] = {}
     with progress_bars(quiet=json) as progress:
-        context = run(steps, Context(how, progress=progress))
+        with timed(seconds, "graph"):
+            built = build_graph(loaded.mesh, method=how, progress=progress)
+        distances = None
+        if len(loaded.skeleton.joints):
+            distances = measure(loaded, how, Computed(), seconds, built, progress)
     document = {
         "input": str(rig),
         "method": options["method"] or "animation",
         "parameters": {name: value for name, value in asdict(how).items() if name in GRAPH_OPTIONS},
-        **described(loaded, context.graph, context.distances, context.seconds),
+        **described(loaded, built, distances, seconds),
         "warnings": list(loaded.warnings),
     }
     print_result(document, rig.name, report_rows(document), json)

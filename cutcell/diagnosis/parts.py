@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..animation.falloff.components import SMALL, bone_containment, longest_sides
+from ..animation.falloff.rigid_accessories import CONTACT, nearest_on_body
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
@@ -16,8 +18,6 @@ from ..rig import TriangleMesh
 from ..rig.deform_joints.conventions import kinds_by_name
 from ..rig.names import words
 from ..runtime.display import count, share
-from ..weights.rig_falloff.components import SMALL, bone_containment, longest_sides
-from ..weights.rig_falloff.rigid_accessories import CONTACT, nearest_on_body
 from .finding import Finding, found
 from .subject import Subject, bones_distance
 

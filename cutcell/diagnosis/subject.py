@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bones.bones import Bones
 from ..geodesics import BoneDistances, bone_distances
-from ..geodesics.bones import Bones
 from ..geometry.edges import MeshEdges, find_edges
 from ..geometry.segments import distance_to_segment
 from ..geometry.triangles import areas, label_components

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.falloff.adjustments import Adjustments
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Rig
-from ..weights.adjustments import Adjustments
 from .edits import Edits
 from .layers.contents import Computed, FromFile, Locked
 from .layers.layer import Layer

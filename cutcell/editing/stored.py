@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from .. import __version__
-from ..binding import Binding
 from ..errors import FileError, ParameterError
 from ..io import save
 from ..io.files import naming
+from ..io.formats import GLTF
 from ..io.gltf.container import json_bytes, pack_glb, read_document
-from ..method import ANIMATION
+from ..method import ANIMATION, Method
 from ..rig import Rig
 from ..runtime.writing import write_all
 from .edits import Edits
@@ -29,7 +29,6 @@ from .layers.packing import naming as naming_part
 
 KEY = "cutcell"
 """Entry of a document's asset extras."""
-GLTF = (".glb", ".gltf", ".vrm")
 ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
 """Source of the numbers of a file, and their unit."""
 
@@ -103,16 +102,20 @@ def entry_of(rig: Rig, edits: Edits, merged: NDArray[np.float64]) -> dict[str, A
 
 
 def settings_with_layers(
-    rig: Rig, binding: Binding, edits: Edits, lowest: Sequence[Layer] = ()
+    rig: Rig,
+    method: Method,
+    weights: NDArray[np.float64],
+    edits: Edits,
+    lowest: Sequence[Layer] = (),
 ) -> dict[str, Any]:
-    """Return what a file holds of a binding by edits; the lowest layers go below the others."""
-    options = asdict(binding.method)
-    method = {name: value for name, value in options.items() if value != getattr(ANIMATION, name)}
-    method["resolution"] = binding.method.resolution
+    """Return what a file holds of weights (n, j) by edits; the lowest layers go below others."""
+    options = asdict(method)
+    changed = {name: value for name, value in options.items() if value != getattr(ANIMATION, name)}
+    changed["resolution"] = method.resolution
     settings = {**ABOUT, **options}
     if edits.layers or lowest or edits.base == "file":
-        edits = replace(edits, method=method, layers=edits.layers_over(lowest))
-        settings |= entry_of(rig, edits, binding.weights)
+        edits = replace(edits, method=changed, layers=edits.layers_over(lowest))
+        settings |= entry_of(rig, edits, weights)
     return settings
 
 

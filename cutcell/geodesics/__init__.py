@@ -1,8 +1,8 @@
 """Bones, their distances through the body, and what to do where there are none."""
 
+from ..bones.bones import Bones, Sources, bone_samples, bone_segments
 from ..geometry.segments import distance_to_segment
 from ..method import LEAVES
-from .bones import Bones, Sources, bone_samples, bone_segments
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
 from .solver import BoneDistanceSolver

@@ -16,12 +16,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bones.bones import Sources
 from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
 from ..runtime.compiled import compiled, no_refcount
 from ..runtime.progress import Progress, Shares, Tell, silent
 from ..runtime.threads import in_threads
-from .bones import Sources
 
 BATCH = 8
 """Bones whose distances to a node are next to each other: they fill a cache line."""

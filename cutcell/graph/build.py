@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Unpack
 
+from ..checks import check_choice
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
-from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
 from ..runtime.progress import Progress, share_of, silent
 from ..runtime.threads import cancellable
@@ -51,7 +51,7 @@ def build_graph(
     **options
         Single options of the method: `connectivity`, `winding_threshold`, `orient`. With
         connectivity 26 there are diagonals of lattice cells that lie inside altogether; with
-        "any" there are the edges of 6, which paths may leave, see `geodesics.any_angle`.
+        "any" there are the edges of 6, which paths may leave, see `animation.any_angle`.
 
     Returns
     -------

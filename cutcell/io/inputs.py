@@ -12,26 +12,13 @@ from typing import BinaryIO
 
 from ..errors import FileError
 from .files import read_bytes
+from .formats import BY_SUFFIX
 
 Input = str | os.PathLike[str] | bytes | bytearray | memoryview | BinaryIO
 ADDRESS = re.compile(r"[A-Za-z][\w+.-]+:/")
 OPENED = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
-BEGINNINGS = {
-    ".glb": rb"glTF",
-    ".fbx": rb"Kaydara FBX|;\s*FBX",
-    ".usdc": rb"PXR-USDC",
-    ".usda": rb"#usda",
-    ".npz": rb"PK[\0-\xff]{28}\w+\.npy",
-    ".usdz": rb"PK",
-    ".ply": rb"ply\s",
-    ".off": rb"\w{0,4}OFF\s",
-    ".json": rb'\s*\{\s*"joints"',
-    ".gltf": rb"\s*\{",
-    ".txt": rb"(joints|root|hier|skin)\s",
-    ".obj": rb"\s*(#|(mtllib|usemtl|v|vt|vn|o|g|s)\s)",
-    ".stl": rb"solid\s|[\0-\xff]{84}",
-}
-"""Ending of a file by how its content begins."""
+STL = 84
+"""Bytes of the start of a binary STL, which is what another file is taken for."""
 
 
 @contextmanager
@@ -55,9 +42,11 @@ def as_file(source: Input) -> Iterator[Path]:
         if not isinstance(data, bytes):
             raise FileError(f'{name}: is open as text; open it as bytes: open(path, "rb")')
     start = data.removeprefix(b"\xef\xbb\xbf")
-    endings = (end for end, pattern in BEGINNINGS.items() if re.match(pattern, start))
+    matches = {end: re.match(one.suffixes[end], start) for end, one in BY_SUFFIX.items()}
+    lengths = {end: match.end() for end, match in matches.items() if match}
+    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) > STL else "")
     stem = Path(str(name).strip("<>")).stem or "bytes"
     with TemporaryDirectory() as folder:
-        path = Path(folder, stem + next(endings, ""))
+        path = Path(folder, stem + ending)
         path.write_bytes(data)
         yield path

@@ -5,36 +5,39 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError, SkeletonError
 from ..rig import Clip, Rig, Skeleton
-from .articulation import read_articulation
 from .files import naming
-from .gltf.container import Document, malformed
+from .formats import BY_SUFFIX, described, suffixes
+from .gltf.container import Document
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.added_skins import has_volume
 from .gltf.read.bones import find_bones
 from .gltf.read.clips import read_clips
-from .gltf.read.compressed import plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
-from .meshes.mesh_files import read_skeleton_json
-from .rignet import read_rignet_skeleton
-from .scenes.document import SCENES, scene_arrays, scene_document
 from .weights import with_deform
 
-KINDS = ".json, .glb, .gltf, .vrm, .fbx, .usd, .txt (RigNet) or .npz (Articulation-XL)"
 MARGIN = 0.1
 """How far joints may lie outside of the bounding box, in diagonals of it."""
 SIMILAR = 0.5
 """The scene's places are chosen unless those in the bind space fit better than by this factor."""
 MIN_FIT = 0.2
 """Below it the user is warned."""
-_Donor = tuple[Skeleton, NDArray[np.float64], NDArray[np.int8] | None, Sequence[tuple[Clip, ...]]]
-"""Joints, the matrix to their scene, which deform if stored, and clips there and before it."""
+
+
+class SkeletonFile(NamedTuple):
+    """What a file has of a skeleton."""
+
+    skeleton: Skeleton
+    world: NDArray[np.float64] = np.eye(4)  # (4, 4): from the skeleton's space to the scene
+    stored: NDArray[np.int8] | None = None  # (j,): which joints deform, see `with_deform`
+    clips: Sequence[tuple[Clip, ...]] = ((), ())  # in the scene, and in the skeleton's space
 
 
 def with_skeleton(rig: Rig, path: Path) -> Rig:
@@ -44,7 +47,11 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
     programs differ in units and axes.
     """
     with naming(path):
-        skeleton, world, stored, clips = _read(path)
+        kind = path.suffix.lower()
+        if kind not in suffixes("read_skeleton"):
+            choices = described("read_skeleton")
+            raise FileError(f'no skeleton can be read from "{kind}"; give {choices}')
+        skeleton, world, stored, clips = BY_SUFFIX[kind].module.read_skeleton(path)
         if not len(skeleton.joints):
             raise SkeletonError(
                 "has no joints: neither a skin, nor nodes that are bones. Give a file with an "
@@ -90,30 +97,10 @@ def _extent(points: NDArray[np.float64]) -> str:
     return " to ".join(f"({corner})" for corner in corners)
 
 
-def _read(path: Path) -> _Donor:
-    """Return what a file has of a skeleton."""
-    kind, world, still = path.suffix.lower(), np.eye(4), ((), ())
-    if kind == ".json":
-        skeleton, says_deform = read_skeleton_json(path)
-        return skeleton, world, skeleton.deform.astype(np.int8) if says_deform else None, still
-    if kind == ".npz":
-        return read_articulation(path).skeleton, world, None, still
-    if kind == ".txt":
-        return read_rignet_skeleton(path), world, None, still
-    if kind in (".glb", ".gltf", ".vrm"):
-        with malformed():
-            return _of_document(plain_document(path))
-    if kind in SCENES:
-        scene = scene_arrays(path)
-        document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
-        return _of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
-    raise FileError(f'no skeleton can be read from "{kind}"; give {KINDS}')
-
-
-def _of_document(
+def of_document(
     document: Document, bones: list[int] | None = None, world: NDArray | None = None
-) -> _Donor:
-    """Return what `_read` does, of the skins of a document, else of its bones."""
+) -> SkeletonFile:
+    """Return the joints of a document's skins, else its bones, which a scene lists."""
     nodes = Nodes(document)
     skins, bind = list(range(len(document.items("skins")))), Bind()
     if skins:
@@ -125,11 +112,11 @@ def _of_document(
             bind.world = nodes.world[0]
         bind.inverse = [np.linalg.inv(nodes.world[i]) @ bind.world for i in bind.nodes]
     if not bind.nodes:
-        return Skeleton([], []), bind.world, None, ((), ())  # type: ignore[arg-type]
+        return SkeletonFile(Skeleton([], []), bind.world)  # type: ignore[arg-type]
     stored = read_deform(document, bind.skins, len(bind.nodes))
     inverse, back = np.array(bind.inverse), np.linalg.inv(bind.world)
     clips = (
         read_clips(document, nodes, bind.nodes, inverse @ back, np.eye(4)),
         read_clips(document, nodes, bind.nodes, inverse, bind.world),
     )
-    return read_skeleton(nodes, bind), bind.world, stored, clips
+    return SkeletonFile(read_skeleton(nodes, bind), bind.world, stored, clips)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..errors import LocatedWarning
 from ..rig import Part, Rig, Skeleton, TriangleMesh
 from ..rig.deform_joints import deform_joints
+from ..rig.deform_joints.choice import guess_warnings
 from ..rig.names import is_neutral
 from ..rig.rig import LARGE, normalised
 from ..runtime.display import listed
@@ -111,7 +112,7 @@ def with_deform(
         count = int((weights[:, neutral] > 0).any(axis=1).sum())
         text = (
             f"{count:,} of {len(weights):,} vertices had no weights in Blender, which gives such "
-            f"vertices to {_names(skeleton, neutral)}: they count as without weight, and binding "
+            f"vertices to {skeleton.listed(neutral)}: they count as without weight, and binding "
             "gives them new weights"
         )
         warnings.append(LocatedWarning(text, "unweighted-vertices"))
@@ -127,7 +128,7 @@ def with_deform(
     marked_off = stored == 0
     if weights is not None and (weighted := marked_off & (weights > 0).any(axis=0)).any():
         warnings.append(
-            f"{_names(skeleton, weighted)} have weight in the file, but the file marks them as "
+            f"{skeleton.listed(weighted)} have weight in the file, but the file marks them as "
             "not deforming: new weights give them none"
         )
     return replace(skeleton, deform=deform), weights, warnings
@@ -163,28 +164,14 @@ def _inferred(
     """Return which joints (j,) deform by the weights, else by names and places, and warnings."""
     total = 0.0 if weights is None else float(weights.sum())
     if weights is None or total == 0:
-        guess, warnings = deform_joints(mesh, skeleton), []
-        if not guess.deform.all():
-            warnings.append(
-                f"{(~guess.deform).sum()} of {len(skeleton.names)} joints are taken for controls, "
-                f"end markers or roots and get no weight: {_names(skeleton, ~guess.deform)}"
-            )
-        if guess.doubtful.any():
-            warnings.append(
-                f"{guess.doubtful.sum()} joints that may be controls or end markers get weight: "
-                f"{_names(skeleton, guess.doubtful)}; exclude those that move no skin"
-            )
-        return guess.deform, warnings
+        guess = deform_joints(mesh, skeleton)
+        return guess.deform, guess_warnings(skeleton, guess.deform, guess.doubtful)
     strongest = weights.max(axis=0)
     deform = strongest >= FOLLOWED * min(1.0, strongest.max())
     weak = ~deform & (strongest > 0)
     if not weak.any():
         return deform, []
     return deform, [
-        f"no vertex follows {_names(skeleton, weak)} by {FOLLOWED:.0%} in the file: taken for "
+        f"no vertex follows {skeleton.listed(weak)} by {FOLLOWED:.0%} in the file: taken for "
         "helpers or controls, which get no weight"
     ]
-
-
-def _names(skeleton: Skeleton, which: NDArray[np.bool_]) -> str:
-    return listed([skeleton.names[j] for j in np.flatnonzero(which)])

@@ -94,7 +94,7 @@ def blended(
     dual /= np.where(is_held, length, 1)
     axis, other = real[:, :3], dual[:, :3]
     move = real[:, 3:] * other - dual[:, 3:] * axis + np.cross(axis, other)
-    return rotated(real, points) + move, real
+    return Rotation.from_quat(real).apply(points) + move, real
 
 
 def _dual_parts(
@@ -121,9 +121,3 @@ def rotation_quaternions(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     order = result[:, [3, 0, 1, 2]]
     first = np.argmax(np.abs(order) > TIE, axis=1)[:, None]
     return np.asarray(result * np.sign(np.take_along_axis(order, first, axis=1)), np.float64)
-
-
-def rotated(quaternions: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (n, 3) that unit quaternions (n, 4) rotate."""
-    axis, w = quaternions[:, :3], quaternions[:, 3:]
-    return points + 2 * np.cross(axis, np.cross(axis, points) + w * points)

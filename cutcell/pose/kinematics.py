@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 from ..errors import ParameterError
-from ..rig import Skeleton
-from ..rig.clip import Clip
+from ..rig import Clip, Skeleton
+from ..rig.checks import as_array
 from ..rig.transforms import composed
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -71,7 +72,7 @@ def rotate_joint(
 
 
 def axis_rotation(axis: str | ArrayLike, degrees: float) -> NDArray[np.float64]:
-    """Return the rotation matrix, shape (3, 3), about an axis (formula of Rodrigues)."""
+    """Return the rotation matrix, shape (3, 3), about an axis."""
     if isinstance(axis, str):
         if axis not in AXES:
             raise ParameterError(f'axis "{axis}" is none of x, y, z')
@@ -82,10 +83,8 @@ def axis_rotation(axis: str | ArrayLike, degrees: float) -> NDArray[np.float64]:
         raise ParameterError("axis is (0, 0, 0), which has no direction")
     if not np.isfinite(degrees):
         raise ParameterError(f"degrees must be a finite number, not {degrees}")
-    x, y, z = direction / length
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    angle = np.radians(degrees)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    vector = np.radians(degrees) * direction / length
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix(), np.float64)
 
 
 def checked_joint(skeleton: Skeleton, joint: int) -> int:
@@ -98,12 +97,7 @@ def checked_joint(skeleton: Skeleton, joint: int) -> int:
 
 
 def _numbers(value: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(value, np.float64)
-    except (TypeError, ValueError):
-        raise ParameterError(f"{name} must be an array of numbers") from None
-    if array.shape != shape:
-        raise ParameterError(f"{name} has the shape {array.shape}, expected {shape}")
+    array = as_array(value, np.float64, shape, name, ParameterError)
     if not np.isfinite(array).all():
         raise ParameterError(f"{name} holds values that are not finite numbers")
     return array

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from collections import deque
+from collections.abc import Iterator
+from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
+from ..animation.falloff.adjustments import Adjustments
+from ..animation.falloff.pipeline import RigFalloff
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
-from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..runtime.progress import Progress, Tell, share_of, silent
-from ..runtime.threads import in_threads, parts, threads
-from .adjustments import Adjustments
-from .context import Context, Step, run
+from ..rig.rows import rows_of_entries, scaled, single, with_data, with_rows
+from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
-from .prune import A_PART, prune
-from .rig_falloff.pipeline import RIG_STEPS
-from .rig_falloff.surface_operators import SurfaceOperators
+from .prune import prune
 
 
 def skinning_weights(
@@ -28,7 +28,6 @@ def skinning_weights(
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
-    surface: SurfaceOperators | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -44,8 +43,6 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
         Arrays that `bind` makes of the gains and radii in `Computed`.
-    surface : SurfaceOperators, optional
-        Operators of the graph's mesh; computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
@@ -78,86 +75,112 @@ def skinning_weights(
             f"{measured} nearest joints of each vertex alone: measure them again with this method"
         )
 
-    graph = distances.graph
     if allowed is not None:
         deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
-        allowed = check_allowed(graph, deform, allowed)
-    context = Context(method, allowed, progress, graph, distances, adjustments, surface)
-    return run(weight_steps(method, allowed), context).weights
+        allowed = check_allowed(distances.graph, deform, allowed)
+    steps = weight_steps(distances, method, allowed, adjustments, progress=progress)
+    return last_of(steps).toarray()
 
 
-def weight_steps(method: Method, allowed: NDArray[np.bool_] | None = None) -> tuple[Step, ...]:
-    """List the steps from distances to weights, in their order.
+class WeightStep(NamedTuple):
+    """A step from distances to weights, and the weights after it: (n, j), or (k, j) if `welded`."""
+
+    name: str
+    weights: csr_array
+    welded: bool = False
+
+
+LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
+"""Labels of the steps after the falloff."""
+
+
+def weight_steps(
+    distances: BoneDistances,
+    method: Method,
+    allowed: NDArray[np.bool_] | None = None,
+    adjustments: Adjustments | None = None,
+    falloff: RigFalloff | None = None,
+    progress: Progress = silent,
+    scaled: bool = True,
+) -> Iterator[WeightStep]:
+    """Compute weights from distances, and yield those after each step.
+
+    The falloff "rig" is computed if left out. If not `scaled`, the largest weights of each vertex
+    stay as they are: then fewer can be kept later, and scaled, with the very result of keeping
+    fewer at once.
 
     Shapes: allowed (n, j), see `skinning_weights`.
     """
-    falloff: tuple[Step, ...] = (
-        (Step("falloff", equation_1),) if method.falloff == "paper" else RIG_STEPS
-    )
-    expand, normalise = Step("vertices", per_vertex), Step("normalise", limit)
+    graph, priority = distances.graph, _by_position(distances)
+
+    def report(done: float) -> None:
+        progress("weights", done)
+
+    def limited(weights: csr_array) -> csr_array:
+        most, threshold, part = method.max_influences, method.threshold, share_of(report, 0.8, 1)
+        return prune(weights, most, threshold, priority, part, scaled)
+
+    if method.falloff == "paper":
+        weights = equation_1(distances, method, allowed, adjustments)
+        yield WeightStep("falloff", weights, allowed is None)
+    else:
+        falloff = falloff or RigFalloff.over(distances, adjustments)
+        for name, weights in falloff.steps(report):
+            yield WeightStep(name, weights, welded=True)
     if allowed is None:
-        return (*falloff, normalise, expand)
-    return (*falloff, expand, Step("storable", permit), normalise)  # welded vertices may differ
+        weights = limited(weights)[graph.vertex_node]
+    else:
+        if method.falloff != "paper":
+            weights = weights[graph.vertex_node]
+        weights = permit(weights, distances, allowed)
+        yield WeightStep("storable", weights)
+        weights = limited(weights)
+    yield WeightStep("normalise", weights)
 
 
-def equation_1(context: Context) -> NDArray[np.float64]:
-    """Apply the paper's falloff to the distances, see `paper_kernel`."""
-    distances, alpha = context.distances, context.method.alpha
-    assert alpha is not None
-    context.is_per_vertex = context.allowed is not None
-    distance = distances.joint if context.is_per_vertex else distances.at_welded
-    if context.adjustments is not None:
-        distance = distance / context.adjustments.gain[:, None]
-    return paper_kernel(distance, context.graph.lattice.diagonal, alpha)
+def last_of(steps: Iterator[WeightStep]) -> csr_array:
+    """Run all steps; return the weights after the last."""
+    return deque(steps, maxlen=1).pop().weights
 
 
-def permit(context: Context) -> NDArray[np.float64]:
-    """Drop what a vertex may not follow; one left with nothing follows its nearest joint."""
-    assert context.allowed is not None
-    permitted = np.where(context.allowed, context.weights, 0.0)
+def equation_1(
+    distances: BoneDistances,
+    method: Method,
+    allowed: NDArray[np.bool_] | None = None,
+    adjustments: Adjustments | None = None,
+) -> csr_array:
+    """Apply the paper's falloff to the distances, see `paper_kernel`.
+
+    Shapes: allowed (n, j); returns (n, j) with `allowed`, else (k, j) of welded vertices.
+    """
+    assert method.alpha is not None
+    distance = distances.at_welded if allowed is None else distances.joint
+    if adjustments is not None:
+        distance = distance / adjustments.gain[:, None]
+    return csr_array(paper_kernel(distance, distances.graph.lattice.diagonal, method.alpha))
+
+
+def permit(weights: csr_array, distances: BoneDistances, allowed: NDArray[np.bool_]) -> csr_array:
+    """Drop what a vertex may not follow; one left with nothing follows its nearest joint.
+
+    Shapes: weights, allowed (n, j); returns (n, j).
+    """
+    is_allowed = allowed[rows_of_entries(weights), weights.indices]
+    permitted = with_data(weights, weights.data * is_allowed)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    distance = np.where(context.allowed[lost].T, context.distances.joint[:, lost], np.inf)
+    distance = np.where(allowed[lost].T, distances.at(slice(None), lost), np.inf)
     if np.isinf(distance.min(axis=0)).any():
         raise WeightsError("no joint that a vertex may follow was measured; measure by `allowed`")
-    permitted[lost, distance.argmin(axis=0)] = 1
-    return permitted / permitted.sum(axis=1, keepdims=True)
-
-
-def limit(context: Context) -> NDArray[np.float64]:
-    """Keep the largest weights of each vertex."""
-    most, threshold = context.method.max_influences, context.method.threshold
-    order = _by_position(context.distances)
-    report = share_of(context.report, 0.8, 0.9)
-    return prune(context.weights, most, threshold, order, report, context.scaled)
-
-
-def per_vertex(context: Context) -> NDArray[np.float64]:
-    """Return the weights of all vertices, from those of welded ones."""
-    if context.is_per_vertex:
-        return context.weights
-    context.is_per_vertex = True
-    return of_vertices(context.graph, context.weights, share_of(context.report, 0.9, 1))
-
-
-def of_vertices(
-    graph: CutCellGraph, welded: NDArray[np.float64], report: Tell = lambda done: None
-) -> NDArray[np.float64]:
-    """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
-    weights = np.empty((len(graph.vertex_node), welded.shape[1]))
-    in_threads(
-        lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
-        parts(len(weights), threads() + weights.size // A_PART),
-        report,
-    )
-    return weights
+    permitted = with_rows(permitted, lost, single(distance.argmin(axis=0), allowed.shape[1]))
+    return scaled(permitted, 1 / permitted.sum(axis=1))
 
 
 def keep_strongest(
     distances: BoneDistances,
-    weights: NDArray[np.float64],
+    weights: csr_array,
     max_influences: int | None = ANIMATION.max_influences,
     threshold: float = ANIMATION.threshold,
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Keep the largest weights of each vertex: the last step of `skinning_weights`.
 
     Weights of many influences can be kept, and pruned again as often as that is changed.
@@ -166,14 +189,14 @@ def keep_strongest(
     ----------
     distances : BoneDistances
         Distances that the weights were computed from.
-    weights : array, shape (n, j)
+    weights : csr_array, shape (n, j)
         Rows sum to one.
     max_influences, threshold
         See `Method`.
 
     Returns
     -------
-    array, shape (n, j), float64
+    csr_array, shape (n, j)
         Rows sum to one.
 
     Raises

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..geodesics import bone_distances
 from ..graph import build_graph
-from ..method import ANIMATION, RIG_REACH
+from ..method import ANIMATION
 from ..runtime import compile_cache
 from ..runtime.subprocesses import python_environment
 from .skinning_weights import skinning_weights
@@ -84,7 +84,8 @@ def _bind_small() -> None:
         graph = build_graph(tube(), 8, connectivity=connectivity)
         methods = ANIMATION, ANIMATION.with_options(falloff="paper")
         for method in methods:  # which measure from different numbers of joints
-            distances = bone_distances(graph, chain(), method=method, leaf="fit", within=RIG_REACH)
+            within = ANIMATION.reach_needed
+            distances = bone_distances(graph, chain(), method=method, leaf="fit", within=within)
         for method in methods:
             skinning_weights(distances, method=method)
         every = np.ones(distances.joint.shape[::-1], bool)

@@ -7,7 +7,7 @@ from inspect import signature
 from time import perf_counter
 from typing import Any
 
-from cutcell.editing import bind
+from cutcell.binding import bind
 from cutcell.method import ANIMATION, PAPER, Method
 from cutcell.rig import Rig
 

@@ -112,8 +112,8 @@ def coarse_table(comparisons: dict[int, Comparison]) -> Table:
         for names, rig in ((cutcells, coarse), (voxels, fine)):
             for score in rig.scores:
                 if score.method in names:
-                    pair = float(score.l1 or np.nan), float(score.deformation or np.nan)
-                    values[score.method].append(pair)
+                    l1, moved = (score.values.get(name) for name in ("l1", "deformation"))
+                    values[score.method].append((float(l1 or np.nan), float(moved or np.nan)))
         cells = (values[name][-1] for name in (*cutcells, *voxels))
         table.add(coarse.name, *(f"{l1:.3f} / {moved:.1f}" for l1, moved in cells))
     for their in voxels:

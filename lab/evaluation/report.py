@@ -12,7 +12,7 @@ from rich.text import Text
 from cutcell.runtime.display import printable
 
 from ..baselines.compare.markdown import markdown_table
-from ..metrics import DEFINITIONS, Measure
+from ..metrics import DEFINITIONS
 from .scores import Evaluation
 
 
@@ -70,13 +70,13 @@ def left_out_lines(evaluation: Evaluation) -> Iterator[str]:
 
 
 def _head(name: str) -> list[str]:
-    return ["rig", *(measure.heading for measure in DEFINITIONS[name].measures.values())]
+    return ["rig", *(metric.title for metric in DEFINITIONS[name].measures.values())]
 
 
 def _rigs(evaluation: Evaluation, name: str) -> Iterator[list[str]]:
     measures = DEFINITIONS[name].measures
     for rig in evaluation.rigs:
-        yield [rig.name, *(_cell(rig.errors[name][key], of) for key, of in measures.items())]
+        yield [rig.name, *(of.text(rig.errors[name][key]) for key, of in measures.items())]
 
 
 def _all(evaluation: Evaluation, name: str) -> Iterator[list[str]]:
@@ -85,8 +85,4 @@ def _all(evaluation: Evaluation, name: str) -> Iterator[list[str]]:
         measures = DEFINITIONS[name].measures
         statistics = {key: evaluation.statistic(name, key) for key in measures}
         for row in ("median", "mean"):
-            yield [row, *(_cell(statistics[key][row], of) for key, of in measures.items())]
-
-
-def _cell(value: float | None, measure: Measure) -> str:
-    return "–" if value is None else format(value, measure.form)
+            yield [row, *(of.text(statistics[key][row]) for key, of in measures.items())]

@@ -8,18 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose import linear_blend_skinning
-from cutcell.pose.skin import Gap
 from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
-from cutcell.runtime.progress import Progress, silent
 
-from .deformation import CM2, check_fit, longest_side
-from .weight_error import checked_pair
+from .deformation import CM2, checked_fit, longest_side
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""
-NEARLY_ALL = 0.995
-"""Part of the vertices that `motion_error` calls nearly all."""
 
 
 @dataclass(frozen=True)
@@ -76,13 +71,11 @@ def clip_error(
     ParameterError
         An unknown `count`.
     """
-    rig.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, rig.mesh, rig.skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     share = vertex_shares(rig.mesh, count)
     errors = []
     for clip in rig.clips:
-        times = _compared_times(clip)
+        times = compared_times(clip)
         largest, total = np.zeros(len(weights)), 0.0
         for time in times:
             transforms = clip.sample(time)
@@ -106,36 +99,7 @@ def squared_distances(
     return (difference * difference).sum(axis=1) / longest_side(mesh) ** 2
 
 
-def motion_error(clip: Clip, gap: Gap, progress: Progress = silent) -> tuple[float, float, float]:
-    """Return the distances between two sets of weights while a clip plays, in the gap's unit.
-
-    Parameters
-    ----------
-    clip : Clip
-        In the space of the gap's points.
-    gap : Gap
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    rms : float
-        Root mean square over frames and vertices.
-    greatest : float
-    most : float
-        What nearly all vertices stay below, in every frame.
-    """
-    times = _compared_times(clip)
-    squares = greatest = most = 0.0
-    for done, time in enumerate(times):
-        progress("error", done / len(times))
-        lengths = gap.lengths(clip.sample(time))
-        squares += float(np.square(lengths).mean()) / len(times)
-        greatest = max(greatest, float(lengths.max()))
-        most = max(most, float(np.quantile(lengths, NEARLY_ALL)))
-    return float(np.sqrt(squares)), greatest, most
-
-
-def _compared_times(clip: Clip) -> NDArray[np.float64]:
+def compared_times(clip: Clip) -> NDArray[np.float64]:
+    """Return the times of a clip's compared frames, shape (f,)."""
     frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
     return clip.times[frames[frames >= 0]]

@@ -3,38 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from cutcell.rig import Rig
-from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
-from .deformation import deformation_error
-from .poses import pose_error
-from .weight_error import precision_recall, weight_l1
+from .deformation import checked_fit
+from .table import METRICS, Measured, Metric
 
 RIGNET_THRESHOLD = 1e-4
 UNIRIG_SIDE = 2.0
 """Longest side of UniRig's meshes, which are scaled into the cube from -1 to 1."""
-
-
-@dataclass(frozen=True)
-class Measure:
-    """One number of a definition.
-
-    Parameters
-    ----------
-    heading : str
-        Its name in tables.
-    form : str
-        Format of the number, such as ".3f".
-    """
-
-    heading: str
-    form: str
 
 
 @dataclass(frozen=True)
@@ -46,12 +27,20 @@ class Definition:
     title : str
     text : str
         What is measured, in a few words.
-    measures : mapping of str to Measure
+    measures : mapping of str to Metric
     """
 
     title: str
     text: str
-    measures: Mapping[str, Measure]
+    measures: Mapping[str, Metric]
+
+
+def _mean_over_joints(one: Measured) -> float:
+    return METRICS["l1"].measure(one) / len(one.rig.skeleton.joints)
+
+
+def _vertex_loss(one: Measured) -> float:
+    return UNIRIG_SIDE**2 * one.poses.mean_square / 3
 
 
 DEFINITIONS: dict[str, Definition] = {
@@ -60,10 +49,8 @@ DEFINITIONS: dict[str, Definition] = {
         "L1 summed over joints; precision and recall above 0.001; deformation error in cm² as "
         "each joint turns by 30°, longest side 1 m. Welded vertices.",
         {
-            "l1": Measure("L1", ".3f"),
-            "precision": Measure("precision", ".3f"),
-            "recall": Measure("recall", ".3f"),
-            "deformation": Measure("deformation cm²", ".2f"),
+            **{name: METRICS[name] for name in ("l1", "precision", "recall")},
+            "deformation": replace(METRICS["deformation"], form=".2f"),
         },
     ),
     "rignet": Definition(
@@ -71,11 +58,10 @@ DEFINITIONS: dict[str, Definition] = {
         "L1 summed over joints; precision and recall above 0.0001; distance in 10 random poses, "
         "longest side 1. Vertices of the file.",
         {
-            "l1": Measure("avg L1", ".3f"),
-            "precision": Measure("precision", ".3f"),
-            "recall": Measure("recall", ".3f"),
-            "mean_distance": Measure("avg dist", ".4f"),
-            "largest_distance": Measure("max dist", ".4f"),
+            "l1": replace(METRICS["l1"], heading="avg L1"),
+            **{name: METRICS[name] for name in ("precision", "recall")},
+            "mean_distance": Metric("avg dist", lambda one: one.poses.mean, form=".4f"),
+            "largest_distance": Metric("max dist", lambda one: one.poses.largest, form=".4f"),
         },
     ),
     "unirig": Definition(
@@ -83,8 +69,8 @@ DEFINITIONS: dict[str, Definition] = {
         "L1 averaged over joints; mean squared error of coordinates in 10 random poses, longest "
         "side 2. Vertices of the file.",
         {
-            "l1": Measure("L1 loss", ".5f"),
-            "vertex_loss": Measure("vertex loss", ".2e"),
+            "l1": Metric("L1 loss", _mean_over_joints, form=".5f"),
+            "vertex_loss": Metric("vertex loss", _vertex_loss, form=".2e"),
         },
     ),
 }
@@ -125,31 +111,10 @@ def errors_by_definition(
     Paper section 4.3; Xu et al. 2020 (RigNet); Zhang et al. 2025 (UniRig), `skin_l1_loss` and
     `vertex_loss` of its code. `docs/networks.md` lists what they leave open.
     """
-    turns = deformation_error(rig, predicted, reference, joints="all", progress=progress)
-    welded, even = vertex_shares(rig.mesh), vertex_shares(rig.mesh, "vertices")
-    precision, recall = precision_recall(predicted, reference, welded)
-    paper: dict[str, float | None] = {
-        "l1": weight_l1(predicted, reference, welded),
-        "precision": _number(precision),
-        "recall": _number(recall),
-        "deformation": turns.mean,
-    }
-    poses = pose_error(rig, predicted, reference)
-    l1 = weight_l1(predicted, reference, even)
-    precision, recall = precision_recall(predicted, reference, even, threshold=RIGNET_THRESHOLD)
-    rignet: dict[str, float | None] = {
-        "l1": l1,
-        "precision": _number(precision),
-        "recall": _number(recall),
-        "mean_distance": poses.mean,
-        "largest_distance": poses.largest,
-    }
-    unirig: dict[str, float | None] = {
-        "l1": l1 / len(rig.skeleton.joints),
-        "vertex_loss": UNIRIG_SIDE**2 * poses.mean_square / 3,
-    }
-    return {"paper": paper, "rignet": rignet, "unirig": unirig}
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else value
+    predicted, reference = checked_fit(rig, predicted, reference)
+    welded = Measured(rig, predicted, reference, turned="all", progress=progress)
+    even = Measured(
+        rig, predicted, reference, count="vertices", threshold=RIGNET_THRESHOLD, progress=progress
+    )
+    measured = {"paper": welded, "rignet": even, "unirig": even}
+    return {name: measured[name].values(of.measures) for name, of in DEFINITIONS.items()}

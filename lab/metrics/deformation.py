@@ -8,9 +8,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.rig.checks import check_choice, check_number
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
@@ -144,9 +144,7 @@ def deformation_error(
     Paper section 4.3.1.
     """
     mesh, skeleton = parts_of(rig)
-    skeleton.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, mesh, skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     degrees = check_number("degrees", degrees, 0, 180)
     turned = _checked_joints(joints, skeleton)
     share = vertex_shares(mesh, count)
@@ -205,45 +203,26 @@ def parts_of(rig: Rig | tuple[TriangleMesh, Skeleton]) -> tuple[TriangleMesh, Sk
     return rig
 
 
-def check_fit(weights: NDArray[np.float64], mesh: TriangleMesh, skeleton: Skeleton) -> None:
-    """Raise WeightsError unless the weights are for these vertices and joints."""
+def checked_fit(
+    rig: Rig | tuple[TriangleMesh, Skeleton], predicted: ArrayLike, reference: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return both as arrays (n, j) of weights for the vertices and joints of a rig."""
+    mesh, skeleton = parts_of(rig)
+    (rig if isinstance(rig, Rig) else skeleton).require_joints()
+    weights, targets = checked_pair(predicted, reference)
     expected = (len(mesh.vertices), len(skeleton.joints))
     if weights.shape != expected:
         raise WeightsError(
             f"the weights have the shape {weights.shape}, but the rig has {expected[0]} "
             f"vertices and {expected[1]} joints"
         )
+    return weights, targets
 
 
 def longest_side(mesh: TriangleMesh) -> float:
     """Return the longest side of the bounding box, in the file's units."""
     low, high = mesh.bounds
     return float((high - low).max())
-
-
-def scene_error(
-    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
-) -> DeformationError:
-    """Compute the deformation error with turns about the axes of the scene, where y is up.
-
-    Parameters
-    ----------
-    rig : Rig
-    weights, reference : array_like, shape (n, j)
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    DeformationError
-    """
-
-    def placed(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        return points @ rig.world[:3, :3].T + rig.world[:3, 3]
-
-    mesh, bones = TriangleMesh(placed(rig.mesh.vertices), rig.mesh.faces), rig.skeleton
-    skeleton = Skeleton(placed(bones.joints), bones.parents, bones.names, bones.deform)
-    return deformation_error((mesh, skeleton), weights, reference, progress=progress)
 
 
 def _checked_joints(joints: Turned | ArrayLike, skeleton: Skeleton) -> NDArray[np.intp]:

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from cutcell.checks import check_integer, check_number
 from cutcell.pose import forward_kinematics
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.checks import check_integer, check_number
 from cutcell.rig.mesh import vertex_shares
 
 from .clips import squared_distances
-from .deformation import check_fit
-from .weight_error import checked_pair
+from .deformation import checked_fit
 
 POSES = 10
 """Number of poses, RigNet's."""
@@ -86,9 +85,7 @@ def pose_error(
     ----------
     Xu et al. 2020 (RigNet), "dist"; Zhang et al. 2025 (UniRig), `vertex_loss` of its code.
     """
-    rig.require_joints()
-    weights, targets = checked_pair(predicted, reference)
-    check_fit(weights, rig.mesh, rig.skeleton)
+    weights, targets = checked_fit(rig, predicted, reference)
     poses = check_integer("poses", poses, 1, MAX_POSES)
     degrees = check_number("degrees", degrees, 0, 180)
     share = vertex_shares(rig.mesh, count)

@@ -14,10 +14,10 @@ import numpy as np
 import platformdirs
 from numpy.typing import NDArray
 
-from cutcell.editing import bind
+from cutcell.binding import bind
+from cutcell.checks import check_choice
 from cutcell.errors import CutcellError, ParameterError, WeightsError
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.sources import PACKAGE, source_digest
 from cutcell.runtime.writing import write_all

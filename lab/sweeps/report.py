@@ -8,7 +8,6 @@ from rich.text import Text
 
 from cutcell.runtime.display import printable
 
-from ..baselines.compare.markdown import text
 from .run import MEASURES, Sweep, value_text
 
 REFERENCES = {"file": "the file's weights", "computed": "the weights of the method without it"}
@@ -20,10 +19,11 @@ def print_sweep(sweep: Sweep) -> None:
     title = printable(f"{sweep.rig}: {sweep.option}, against {REFERENCES[sweep.reference]}")
     table = Table(title=Text(title, "bold"), title_justify="left", box=None, pad_edge=False)
     table.add_column(sweep.option, no_wrap=True)
-    for name in MEASURES.values():
+    for metric in MEASURES.values():
+        name = metric.title
         table.add_column(name, justify="right", no_wrap=True, min_width=len(name))
     for point in sweep.points:
-        cells = [text(getattr(point, name), name) for name in MEASURES]
+        cells = [metric.text(getattr(point, name)) for name, metric in MEASURES.items()]
         if point.failed:
             cells[0] = "failed"
         table.add_row(value_text(point.value), *cells)

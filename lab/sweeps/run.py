@@ -8,39 +8,37 @@ from dataclasses import asdict, dataclass, fields, replace
 from io import StringIO
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from cutcell.binding import Binding
-from cutcell.editing import Edits, bind
-from cutcell.editing.bind import bind_steps
-from cutcell.editing.bind import finished as finish
+from cutcell.binding import Binding, bind
+from cutcell.binding.stages import bind_edited
+from cutcell.checks import check_choice
+from cutcell.editing import Edits
 from cutcell.errors import Cancelled, CutcellError
 from cutcell.geodesics.fallback import REACHED
 from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
 from cutcell.method import ANIMATION, Method, MethodName, method_of
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
-from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
-from cutcell.weights.context import Context, run
 from cutcell.weights.warm_up import warm_up
 
-from ..metrics import deformation_error, precision_recall, weight_l1
+from ..metrics import METRICS, Measured, Metric
 
 OPTIONS = tuple(field.name for field in fields(Method))
 """Options that can be swept."""
 
-MEASURES = {
-    "l1": "L1",
-    "precision": "precision",
-    "recall": "recall",
-    "deformation": "deformation cm²",
-    "unreachable": "unreachable",
-    "seconds": "seconds",
+
+def _unreachable(one: Measured) -> float:
+    return float(one.share @ (one.binding.distances.fallback != REACHED))
+
+
+MEASURES: dict[str, Metric] = {
+    **{name: METRICS[name] for name in ("l1", "precision", "recall", "deformation")},
+    "unreachable": Metric("unreachable", _unreachable),
+    "seconds": METRICS["seconds"],
 }
-"""The measures, fields of `SweepPoint`, and their names in tables."""
+"""The metrics by name; each is a field of `SweepPoint`."""
 
 
 @dataclass(frozen=True)
@@ -232,11 +230,9 @@ def bind_setting(
         fresh = bind(rig, method.resolution, method=method, graph=earlier.graph, progress=progress)
         return replace(fresh, seconds={**fresh.seconds, **spent})
     spent["distances"] = earlier.seconds.get("distances", 0.0)
-    nothing = Edits()
-    steps = bind_steps(rig, method, nothing, distances=earlier.distances)
 
     def work(report: Progress) -> Binding:
-        return finish(rig, run(steps, Context(method, rig.allowed, report)), nothing)
+        return bind_edited(rig, method, Edits(), distances=earlier.distances, progress=report)
 
     again = cancellable(work, progress, "weights")
     return replace(again, seconds={**again.seconds, **spent})
@@ -277,18 +273,5 @@ def measure_setting(
     WeightsError
         The reference does not fit the rig.
     """
-    share = vertex_shares(rig.mesh)
-    precision, recall = precision_recall(binding.weights, reference, share)
-    return SweepPoint(
-        value,
-        l1=weight_l1(binding.weights, reference, share),
-        precision=_number(precision),
-        recall=_number(recall),
-        deformation=deformation_error(rig, binding.weights, reference, progress=progress).mean,
-        unreachable=float(share @ (binding.distances.fallback != REACHED)),
-        seconds=float(sum(binding.seconds.values())),
-    )
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else value
+    measured = Measured(rig, binding.weights, reference, binding, progress=progress)
+    return SweepPoint(value, **measured.values(MEASURES))

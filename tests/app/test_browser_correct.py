@@ -63,6 +63,9 @@ def test_a_doubtful_joint_has_a_switch(visit, tmp_path):
     switch = listed.get_by_role("switch", name="prop deforms the mesh")
     expect(switch).to_be_checked()
     expect(listed).to_contain_text("control or bone, by its name")
+    visit.settle()
+    share = float(listed.locator(".item .share").inner_text())
+    assert 0 < share < 100, "its part of the skin, in %"
     switch.click()
     expect(switch).not_to_be_checked()
     assert corrected(visit).joints == {"prop": JointEdit(deform=False)}

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.editing import bind
+from cutcell.binding import bind
 from cutcell.errors import MeshError
 from cutcell_app.document import loading
 from cutcell_app.features.check import results as check

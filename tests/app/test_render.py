@@ -49,7 +49,7 @@ DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 @pytest.fixture(scope="module", autouse=True)
 def demos_once():
     """Load and bind each demo once for all commands here; rigs and bindings are frozen."""
-    load, bind = cutcell.io.load, cutcell.editing.bind
+    load, bind = cutcell.io.load, cutcell.binding.bind
     rigs, bindings = {}, {}
 
     def load_once(path, **options):

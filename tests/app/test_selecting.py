@@ -7,9 +7,9 @@ import panel_material_ui as pmui
 import pytest
 
 from cutcell import Edits, Layer, Locked, Mask
-from cutcell.editing import operations as ops
-from cutcell.editing.selected import Selected
 from cutcell_app.document import loading
+from cutcell_app.editing import operations as ops
+from cutcell_app.editing.selected import Selected
 from cutcell_app.features.brush.choices import selected
 from cutcell_app.features.brush.strokes import select
 from cutcell_app.features.correct.commands import choose_file, correct

@@ -81,5 +81,5 @@ def test_blenders_weights_are_read_by_name_or_by_order(name, l1):
         pytest.skip(f"there is no {path}; it is not part of the project")
     rig = cutcell.load(path)
     result = compare([rig], {"blender": lambda rig: quality.blender(rig, folder)})
-    assert result.rigs[0].scores[0].l1 < l1
-    assert result.rigs[0].scores[0].unweighted == 0
+    assert result.rigs[0].scores[0].values["l1"] < l1
+    assert result.rigs[0].scores[0].values["unweighted"] == 0

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from cutcell import Rig, Skeleton, TriangleMesh, bind, load
-from cutcell.geodesics.any_angle.labels import END, SETTLED, join, no_labels, settle_equals
-from cutcell.geodesics.any_angle.line_of_sight import _neighbour, _traverse
-from cutcell.geodesics.bones import Bones
+from cutcell.animation.any_angle.labels import END, SETTLED, join, no_labels, settle_equals
+from cutcell.animation.any_angle.line_of_sight import _neighbour, _traverse
+from cutcell.bones.bones import Bones
 from cutcell.geodesics.fallback import straight_to_nearest
 from cutcell.geometry.laplacian import vertex_normals
 from cutcell.geometry.vectors import TIE
@@ -16,7 +16,7 @@ from cutcell.geometry.weld import weld
 from cutcell.graph.interior import OUTSIDE
 from cutcell_assets import demo_path
 from tests.bars import bar, fork, grid_box
-from tests.cutcell.test_bind import figure
+from tests.cutcell.binding.test_bind import figure
 
 TURNS = [p for p in itertools.permutations(range(3)) if p != (0, 1, 2)]
 LIMBS = {

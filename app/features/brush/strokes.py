@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.errors import CutcellError
-from cutcell.pose.skin import Skin
 from cutcell.rig import TriangleMesh
+from cutcell_viewers.skin import Skin
 
 from ...document.session import Session
 from ...document.state import PANELS, State

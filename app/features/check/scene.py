@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from cutcell.diagnosis import Finding
-from cutcell.pose.skin import Skin
 from cutcell.runtime.display import count
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.finding_scene import finding_marks, finding_pose
 from cutcell_viewers.palette import BODY, MARK, Color
+from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.pose.skin import Skin
 from cutcell_lab.baselines import METHODS
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
 from cutcell_viewers.marks import vertex_dots
 from cutcell_viewers.short_names import short_names
+from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo

@@ -4,8 +4,8 @@ from typing import Any
 
 import cutcell
 from cutcell.binding import Binding
+from cutcell.binding.preview import Preview
 from cutcell.editing import Edits
-from cutcell.editing.preview import Preview
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.graph.sections import PlaneSection
 from cutcell_viewers.description import Actor, Cut, Legend
 from cutcell_viewers.distance_scene import unit_of
+from cutcell_viewers.plane_section import PlaneSection
 from cutcell_viewers.section_scene import body_section, field_face, section_lines, winding_face
 from cutcell_viewers.short_names import short_names
 

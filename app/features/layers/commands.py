@@ -11,10 +11,10 @@ from scipy.sparse import csr_array, vstack
 from cutcell.editing import Edits, FromFile, Layer, Mask, Painted
 from cutcell.editing.layers.contents import Content
 from cutcell.editing.layers.layer import ALL
-from cutcell.editing.operations import ROWS
 from cutcell.errors import CutcellError
 
 from ...document.session import Session
+from ...editing.operations import ROWS
 from ..correct.commands import check_alone, correct
 from ..weights.results import weights_below
 from . import stack

@@ -14,15 +14,13 @@ from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
+from cutcell.binding.stages import bind_layer, with_layers
 from cutcell.editing import Computed, Edits, Layer
-from cutcell.editing.bind import layer_context
-from cutcell.editing.layers import RigSources, apply_layers
 from cutcell.geodesics import BoneDistances
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.runtime.threads import cancellable
 from cutcell.weights import keep_strongest
-from cutcell.weights.context import Context
 
 CACHED = 4
 """Number of contents whose weights are remembered."""
@@ -77,14 +75,13 @@ def recompute(
     bound: Any, reach: Computed, options: dict[str, Any], rig: Rig, layer: Layer, progress: Progress
 ) -> Recomputed:
     """Compute the weights of a layer by options of a method, with a `Bound` for the base."""
-    distances, method = bound.binding.distances, cutcell.ANIMATION.with_options(**options)
+    base = replace(bound.binding, method=cutcell.ANIMATION.with_options(**options))
 
-    def work(report: Progress) -> Context:
-        base = Context(method, rig.allowed, report, distances.graph, distances, scaled=False)
-        return layer_context(rig, base, reach, layer)
+    def work(report: Progress) -> Binding:
+        return bind_layer(rig, base, reach, layer, report, scaled=False)
 
-    context = cancellable(work, progress, "weights")
-    return Recomputed(context.distances, csr_array(context.weights))
+    binding = cancellable(work, progress, "weights")
+    return Recomputed(binding.distances, binding.rows)
 
 
 def layered(
@@ -94,16 +91,15 @@ def layered(
 
     Weights of layers that are not given are those of the base.
     """
-    base, few = binding.weights, binding.method
+    few = binding.method
 
     def computed(layer: Layer) -> NDArray[np.float64]:
         result = recomputed.get(_key(layer))
         if result is None:
-            return base
+            return binding.weights
         assert isinstance(layer.content, Computed)
         method = layer.content.method(few)
         options = method.max_influences, method.threshold
-        return keep_strongest(result.distances, result.weights.toarray(), *options)
+        return keep_strongest(result.distances, result.weights, *options).toarray()
 
-    sources = RigSources(rig, few, binding.graph, computed=computed)
-    return replace(binding, weights=apply_layers(base, edits.stack(), sources))
+    return with_layers(rig, binding, edits.stack(), computed)

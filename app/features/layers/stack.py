@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.animation.falloff.surface_operators import surface_of
 from cutcell.editing import (
     Attached,
     Computed,
@@ -23,7 +24,6 @@ from cutcell.editing import (
 )
 from cutcell.editing.layers import vertices_of as masked_by
 from cutcell.editing.layers.contents import Content
-from cutcell.editing.layers.sources import surface_of
 from cutcell.editing.locks import locked_joints
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from cutcell.animation.falloff.division import POWER
 from cutcell.weights.paper_kernel import paper_kernel
-from cutcell.weights.rig_falloff.division import POWER
 from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.short_names import short_names
 

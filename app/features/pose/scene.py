@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from cutcell.pose import axis_rotation
-from cutcell.pose.skin import Gap, Skin
 from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
 from cutcell_viewers.description import Actor, Apart, Description, Legend
@@ -20,6 +19,7 @@ from cutcell_viewers.error_scene import (
 from cutcell_viewers.materials import Textures
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing
+from cutcell_viewers.skin import Gap, Skin
 
 from ...derive.memo import Memo
 from ...document.state import PANELS, State

@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from cutcell.editing import Locked
-from cutcell.editing import operations as ops
 from cutcell.editing.locks import locked_joints
-from cutcell.editing.selected import Selected
 from cutcell.editing.selections import Neighbours
 from cutcell.editing.symmetry import Mirror, find_mirror
 from cutcell.errors import CutcellError, ParameterError
@@ -20,6 +18,8 @@ from cutcell.rig.names import plain
 from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
+from ...editing import operations as ops
+from ...editing.selected import Selected
 from ..brush.choices import selected, selected_vertices
 from ..correct.commands import check_alone
 from ..correct.moving import mirror_of

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing.selections import vertices_where
 from cutcell.errors import CutcellError, ParameterError
 
 from ...document.look import pick
 from ...document.session import Session
 from ...document.state import PANELS, State
+from ...editing.condition import vertices_where
 from ..brush.choices import selected
 from ..brush.strokes import clear_selection, invert_selection, select
 from .histogram import in_bars

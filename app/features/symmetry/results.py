@@ -5,7 +5,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from cutcell.diagnosis.asymmetry import MirrorImage, asymmetry, mirror_image
 from cutcell.errors import MeshError, SkeletonError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -13,6 +12,7 @@ from cutcell.runtime.progress import Progress
 from ...derive.derived import Derived
 from ...document.state import State
 from ...server.messages import visible_text
+from .asymmetry import MirrorImage, asymmetry, mirror_image
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Asymmetry:
     weights : array, shape (n, j)
         The weights that it is of.
     values : array, shape (n,)
-        See `cutcell.diagnosis.asymmetry.asymmetry`.
+        See `asymmetry`.
     """
 
     weights: NDArray

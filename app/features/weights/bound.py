@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numpy as np
 from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
+from cutcell.binding.stages import bind_base
 from cutcell.editing import Computed
-from cutcell.editing.bind import computed_steps
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.runtime.threads import cancellable
-from cutcell.weights.context import Context, run
 
 graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
 """How long each graph took."""
@@ -58,12 +56,10 @@ def bind_wide(
     """Compute distances, and weights of many influences."""
     method = cutcell.ANIMATION.with_options(**options)
 
-    def work(report: Progress) -> Context:
-        steps = computed_steps(rig, method, reach, graph)
-        return run(steps, Context(method, rig.allowed, report, scaled=False))
+    def work(report: Progress) -> Binding:
+        return bind_base(rig, method, reach, graph, progress=report, scaled=False)
 
-    context = cancellable(work, progress, "distances")
-    seconds = {**context.seconds, "graph": graph_seconds.get(graph, 0.0)}
-    none = np.empty((0, len(rig.skeleton.names)))
-    binding = Binding(none, graph, context.distances, seconds, (), method)
-    return Bound(binding, Influences(falloff, csr_array(context.weights)))
+    wide = cancellable(work, progress, "distances")
+    seconds = {**wide.seconds, "graph": graph_seconds.get(graph, 0.0)}
+    binding = replace(wide, rows=csr_array((0, len(rig.skeleton.names))), seconds=seconds)
+    return Bound(binding, Influences(falloff, wide.rows))

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.editing import Explanation, JointShare
-from cutcell.editing.explain import STEPS
+from cutcell.binding import Explanation, JointShare
+from cutcell.binding.absence import STEPS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
 from cutcell_viewers.joint_colors import colors_of

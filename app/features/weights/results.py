@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
+from cutcell.binding.warnings import with_warnings
 from cutcell.editing import Computed, Edits
-from cutcell.editing.binding_warnings import with_warnings
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
 from cutcell.graph.fingerprint import data_fingerprint
@@ -23,8 +22,7 @@ from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest
-from cutcell.weights.context import Context, run
-from cutcell.weights.skinning_weights import weight_steps
+from cutcell.weights.skinning_weights import last_of, weight_steps
 from cutcell.weights.warm_up import is_compiled, warm_up
 
 from ...derive.derived import Derived
@@ -113,11 +111,9 @@ def _influences(
     distances = bound.binding.distances
     wide = cutcell.ANIMATION.with_options(**options, max_influences=MOST)
     adjustments = adjustments_of(rig, distances.graph, reach)
-    context = Context(
-        wide, rig.allowed, progress, distances.graph, distances, adjustments, scaled=False
-    )
-    context.report(0.0)
-    return Influences(options, csr_array(run(weight_steps(wide, rig.allowed), context).weights))
+    progress("weights", 0.0)
+    steps = weight_steps(distances, wide, rig.allowed, adjustments, progress=progress, scaled=False)
+    return Influences(options, last_of(steps))
 
 
 def _recomputed_inputs(state: State, key: str) -> tuple[Any, ...] | None:
@@ -154,13 +150,11 @@ def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
     binding, key = bound.binding, tuple(few.values())
     strongest = influences.strongest.get(key)
     if strongest is None:
-        wide = influences.weights.toarray()
-        strongest = csr_array(keep_strongest(binding.distances, wide, **few))
+        strongest = keep_strongest(binding.distances, influences.weights, **few)
         influences.strongest.clear()
         influences.strongest[key] = strongest
-    weights = strongest.toarray()
     options = {"leaf": binding.method.leaf, **influences.options, **few}
-    return replace(binding, weights=weights, method=binding.method.with_options(**options))
+    return replace(binding, rows=strongest, method=binding.method.with_options(**options))
 
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ...animation.falloff.rigid_accessories import attach
+from ...animation.falloff.surface_operators import SurfaceOperators, surface_of
 from ...errors import ParameterError, WeightsError
 from ...graph import CutCellGraph
 from ...method import Method
 from ...rig import Rig, TriangleMesh
 from ...weights.prune import prune
-from ...weights.rig_falloff.rigid_accessories import attach
-from ...weights.rig_falloff.surface_operators import SurfaceOperators
 from ..locks import joint_index, lock_joints
 from ..selections import Neighbours
 from ..symmetry import balanced, find_mirror, mirrored
@@ -31,16 +31,8 @@ Which = NDArray[np.intp] | None
 Rows = tuple[Which, Any]
 NEAR = 1.5
 """Lattice cells: shells that are closer are smoothed together, through the body."""
-SURFACES: WeakKeyDictionary[CutCellGraph, SurfaceOperators] = WeakKeyDictionary()
 NEIGHBOURS: WeakKeyDictionary[TriangleMesh, Neighbours] = WeakKeyDictionary()
-"""Operators that were computed: layers are applied again after each change of them."""
-
-
-def surface_of(graph: CutCellGraph) -> SurfaceOperators:
-    """Return a graph's `SurfaceOperators`, computed once."""
-    if graph not in SURFACES:
-        SURFACES[graph] = SurfaceOperators.of(graph)
-    return SURFACES[graph]
+"""Those that were computed: layers are applied again after each change of them."""
 
 
 def vertices_of(mask: Mask, component: Callable[[], NDArray[np.integer]]) -> Which:
@@ -62,8 +54,6 @@ class RigSources:
         Its greatest number of influences holds for layers, too.
     graph : CutCellGraph or None
         Needed by parts, attached ones, and smoothing through the body.
-    operators : callable
-        Returns the graph's `SurfaceOperators`.
     computed : callable
         Returns the weights, shape (n, j), of a layer with a `Computed` content.
     """
@@ -71,7 +61,6 @@ class RigSources:
     rig: Rig
     method: Method
     graph: CutCellGraph | None = None
-    operators: Callable[[], SurfaceOperators] | None = None
     computed: Callable[[Layer], NDArray[np.float64]] | None = None
 
     @cached_property
@@ -93,7 +82,7 @@ class RigSources:
 
     def _surface(self) -> SurfaceOperators:
         assert self.graph is not None
-        return surface_of(self.graph) if self.operators is None else self.operators()
+        return surface_of(self.graph)
 
     def _computed(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
         assert self.computed is not None
@@ -136,9 +125,9 @@ class RigSources:
         if touching[label].all():
             raise ParameterError("every component is to follow where it touches, and none is left")
         first = np.unique(node, return_index=True)[1]
-        attached = attach(self.graph, surface, touching, below[first])
+        attached = attach(self.graph, surface, touching, csr_array(below[first]))
         assert which is not None
-        rows = attached[node[which]]
+        rows = attached[node[which]].toarray()
         if self.rig.allowed is not None:
             rows = np.where(self.rig.allowed[which], rows, 0.0)
         total = rows.sum(axis=1, keepdims=True)
@@ -193,5 +182,5 @@ class RigSources:
             storable = np.where(allowed if which is None else allowed[which], rows, 0.0)
             total = storable.sum(axis=1, keepdims=True)
             rows = np.divide(storable, total, out=rows.copy(), where=total > 0)
-        method = self.method
-        return prune(rows, method.max_influences, method.threshold, self.priority)
+        few = self.method.max_influences, self.method.threshold
+        return prune(csr_array(rows), *few, self.priority).toarray()

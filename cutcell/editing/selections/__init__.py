@@ -1,6 +1,5 @@
-"""Selections of vertices: along the mesh, by joints, by a condition."""
+"""Selections of vertices along the mesh."""
 
-from .condition import vertices_where
 from .neighbours import Neighbours
 
-__all__ = ["Neighbours", "vertices_where"]
+__all__ = ["Neighbours"]

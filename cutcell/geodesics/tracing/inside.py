@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...animation.any_angle.contraction import Contraction
 from ...graph import CutCellGraph
 from ...graph.inside_edges import cells_inside
-from ..any_angle.contraction import Contraction
 
 SPACING = 0.5
 """Lattice cells between samples of a segment."""

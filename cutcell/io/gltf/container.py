@@ -25,7 +25,6 @@ from ..files import HALVES, Allowance, one_line, read_bytes, regular_file, whole
 
 MAGIC = b"glTF"
 SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
-ENDINGS = (".glb", ".gltf", ".vrm")
 JSON_CHUNK = 0x4E4F534A
 BINARY_CHUNK = 0x004E4942
 
@@ -50,16 +49,19 @@ class Document:
         self.forget()
         self.allow()
 
+    @property
+    def is_gltf(self) -> bool:
+        """Whether it was not made from another format."""
+        return self.surfaces is None
+
     def allow(self) -> None:
         """Reset the memory budget of reading by the present size."""
         sizes = {id(buffer): len(buffer) for buffer in self.buffers}  # some may be the same
         self.allowance = Allowance(self.size + sum(sizes.values()))
 
     def forget(self) -> None:
-        """Clear read caches: what was checked or decoded, by the number of its accessor or mesh."""
+        """Clear what was checked and decoded, by the number of its accessor or mesh."""
         self.accessors: dict[int, Any] = {}
-        self.decoded: dict[int, Any] = {}
-        self.finite: set[int] = set()  # accessors that hold finite numbers only
         self.triangles: dict[int, Any] = {}  # vertices, faces and primitives of meshes
 
     def items(self, kind: str) -> list[dict[str, Any]]:

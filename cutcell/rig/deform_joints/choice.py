@@ -7,6 +7,9 @@ from dataclasses import replace
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ...errors import ParameterError
 from ..names import folded
 from ..rig import Rig
@@ -44,15 +47,38 @@ def choose_deform(
     """
     skeleton = rig.skeleton
     chosen = skeleton.deform.copy()
-    if fresh and len(chosen):
-        rig = rig.with_weights(None)
-        chosen = deform_joints(rig.mesh, skeleton).deform.copy()
+    is_chosen = np.zeros(len(chosen), np.bool_)
     for patterns, value in ((deform, True), (no_deform, False)):
         for pattern in patterns:
-            chosen[_named(skeleton, pattern)] = value
+            joints = _named(skeleton, pattern)
+            chosen[joints], is_chosen[joints] = value, True
+    if fresh and len(chosen):
+        guess = deform_joints(rig.mesh, skeleton)
+        chosen = np.where(is_chosen, chosen, guess.deform)
+        warnings = guess_warnings(skeleton, chosen, guess.doubtful & ~is_chosen)
+        rig = replace(rig.with_weights(None), warnings=(*rig.warnings, *warnings))
     if len(chosen) and not chosen.any():
         raise ParameterError("no joint is left that may carry weight; choose fewer to leave out")
     return replace(rig, skeleton=replace(skeleton, deform=chosen))
+
+
+def guess_warnings(
+    skeleton: Skeleton, deform: NDArray[np.bool_], doubtful: NDArray[np.bool_]
+) -> list[str]:
+    """Name the joints that were guessed to carry no weight, and the doubtful ones; (j,) each."""
+    warnings = []
+    if not deform.all():
+        warnings.append(
+            f"{(~deform).sum()} of {len(deform)} joints are taken for controls, end markers or "
+            f"roots and get no weight: {skeleton.listed(~deform)}"
+        )
+    if doubtful.any():
+        warnings.append(
+            f"{doubtful.sum()} joints that may be controls or end markers get weight: "
+            f"{skeleton.listed(doubtful)}; exclude those that move no skin by --no-deform, or by "
+            "their switches on Weights"
+        )
+    return warnings
 
 
 def _named(skeleton: Skeleton, pattern: str) -> list[int]:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer
 from cutcell.geometry.segments import distance_to_segment
 from cutcell.isolated.run import LIMIT, WorkFailedError, run_isolated
 from cutcell.method import PAPER, Leaf, check_resolution
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_integer
 
 from ..body import Body, Same
 from ..frame import BaselineBinding, Run, bind_by
@@ -118,10 +118,7 @@ def harmonic(
     """
     resolution = check_resolution(resolution)
 
-    def carry(cage: Cage, body: Body) -> NDArray[np.float64]:
-        values = cage.weights(body.joints)
-        return harmonic_values(cage.vertices, cage.faces, body.points, values, resolution)
-
+    carry = partial(harmonic_values, resolution=resolution)
     return _bind(rig, carry, leaf, cage_resolution, max_influences, threshold)
 
 
@@ -154,17 +151,12 @@ def mean_value(
     ----------
     Ju, Schaefer & Warren 2005, "Mean value coordinates for closed triangular meshes".
     """
-
-    def carry(cage: Cage, body: Body) -> NDArray[np.float64]:
-        values = cage.weights(body.joints)
-        return mean_values(cage.vertices, cage.faces, body.points, values)
-
-    return _bind(rig, carry, leaf, cage_resolution, max_influences, threshold)
+    return _bind(rig, mean_values, leaf, cage_resolution, max_influences, threshold)
 
 
 def _bind(
     rig: Rig,
-    carry: Callable[[Cage, Body], NDArray[np.float64]],
+    carry: Callable[..., NDArray[np.float64]],
     leaf: Leaf,
     cage_resolution: int,
     max_influences: int | None,
@@ -181,7 +173,7 @@ def _bind(
         if cage is None:
             raise WorkFailedError(failed)
         try:
-            return carry(cage, body)
+            return carry(cage.vertices, cage.faces, body.points, cage.weights(body.joints))
         except WorkFailedError:
             run.end("weights")
             raise

@@ -2,10 +2,9 @@
 
 from .markdown import comparison_markdown
 from .run import compare
-from .scores import MEASURES, Comparison, MethodScore, RigScore, Statistic
+from .scores import Comparison, MethodScore, RigScore, Statistic
 
 __all__ = [
-    "MEASURES",
     "Comparison",
     "MethodScore",
     "RigScore",

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 
 from cutcell.runtime.display import printable
 
-from .scores import MEASURES, Comparison, MethodScore
+from ...metrics import METRICS
+from .scores import Comparison, MethodScore
 
 
 def comparison_markdown(comparison: Comparison) -> str:
-    """Write a comparison as Markdown: the summary, then one table for each measure.
+    """Write a comparison as Markdown: the summary, then one table for each error.
 
     Parameters
     ----------
@@ -21,18 +22,17 @@ def comparison_markdown(comparison: Comparison) -> str:
     str
         Ends with a line break. Failures are named below the tables.
     """
-    measures = ("l1", "precision", "recall", "deformation", "clips", "crosstalk", "seconds")
     lines = ["## All rigs: median, mean (rigs)", ""]
-    lines += markdown_table(
-        ["method", *(MEASURES[name] for name in measures), "no weight", "worst deformation"],
-        [_summary_row(comparison, method, measures) for method in comparison.methods],
-    )
-    for name in ("l1", "deformation", "clips", "crosstalk", "seconds"):
-        rows = [
-            [rig.name, *(_cell(score, name) for score in rig.scores)] for rig in comparison.rigs
-        ]
-        lines += ["", f"## {MEASURES[name]}", ""]
-        lines += markdown_table(["rig", *comparison.methods], rows)
+    heads = [metric.title for metric in METRICS.values()]
+    rows = [_summary_row(comparison, method) for method in comparison.methods]
+    lines += markdown_table(["method", *heads, "worst deformation"], rows)
+    for name, metric in METRICS.items():
+        if metric.lower_is_better:
+            rows = [
+                [rig.name, *(_cell(score, name) for score in rig.scores)] for rig in comparison.rigs
+            ]
+            lines += ["", f"## {metric.title}", ""]
+            lines += markdown_table(["rig", *comparison.methods], rows)
     failures = comparison.failures()
     if failures:
         lines += ["", "## Failed", ""]
@@ -43,31 +43,19 @@ def comparison_markdown(comparison: Comparison) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _summary_row(comparison: Comparison, method: str, measures: Sequence[str]) -> list[str]:
+def _summary_row(comparison: Comparison, method: str) -> list[str]:
     cells = []
-    for name in measures:
-        statistic = comparison.statistic(method, name)
-        cells.append(
-            f"{text(statistic.median, name)}, {text(statistic.mean, name)} ({statistic.count})"
-        )
-    none = comparison.statistic(method, "unweighted").mean
+    for name, metric in METRICS.items():
+        one = comparison.statistic(method, name)
+        cells.append(f"{metric.text(one.median)}, {metric.text(one.mean)} ({one.count})")
     worst = comparison.statistic(method, "deformation")
-    cells.append("–" if none is None else f"{none:.1%}")
-    cells.append(f"{text(worst.worst, 'deformation')} {worst.worst_rig}".strip())
+    cells.append(f"{METRICS['deformation'].text(worst.worst)} {worst.worst_rig}".strip())
     return [method, *cells]
 
 
-def _cell(score: MethodScore, measure: str) -> str:
-    value = getattr(score, measure)
-    return "failed" if score.failed and value is None else text(value, measure)
-
-
-def text(value: float | None, measure: str) -> str:
-    """Write a number with as many digits as its measure deserves."""
-    if value is None:
-        return "–"
-    digits = {"deformation": 1, "clips": 1, "seconds": 2}.get(measure, 3)
-    return f"{value:.{digits}f}"
+def _cell(score: MethodScore, name: str) -> str:
+    value = score.values.get(name)
+    return "failed" if score.failed and value is None else METRICS[name].text(value)
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

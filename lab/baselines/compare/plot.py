@@ -87,16 +87,16 @@ def _sorted(comparison: Comparison) -> list[str]:
     return sorted(finite, key=lambda name: finite[name])
 
 
-def _panel(axes: Any, comparison: Comparison, methods: list[str], measure: str) -> None:
+def _panel(axes: Any, comparison: Comparison, methods: list[str], metric: str) -> None:
     # Dots are moved up and down a little, always the same way, so that none hides another.
     shake = np.linspace(-0.22, 0.22, max(len(comparison.rigs), 2))
     shake = np.random.default_rng(0).permutation(shake)
     for row, name in enumerate(methods):
         index = comparison.methods.index(name)
-        values = [getattr(rig.scores[index], measure) for rig in comparison.rigs]
+        values = [rig.scores[index].values.get(metric) for rig in comparison.rigs]
         scored = [k for k, value in enumerate(values) if value is not None]
-        x = [max(values[k], LEAST if measure == "deformation" else 0) for k in scored]
-        color, statistic = _color(name), comparison.statistic(name, measure)
+        x = [max(values[k], LEAST if metric == "deformation" else 0) for k in scored]
+        color, statistic = _color(name), comparison.statistic(name, metric)
         axes.plot(
             x, row + shake[scored], "o", color=color, alpha=0.45, markersize=4.5, markeredgewidth=0
         )

@@ -9,24 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_choice
 from cutcell.errors import Cancelled, CutcellError, ParameterError, WeightsError, comes_from_ctrl_c
 from cutcell.graph import build_graph
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 
-from ...metrics import (
-    TURNED,
-    Turned,
-    clip_error,
-    crosstalk,
-    deformation_error,
-    find_gaps,
-    precision_recall,
-    unweighted,
-    vertex_shares,
-    weight_l1,
-)
+from ...metrics import METRICS, TURNED, Measured, Turned, find_gaps
 from .. import METHODS, Baseline, BaselineBinding
 from ..methods import known_options
 from .scores import Comparison, MethodScore, RigScore
@@ -105,12 +94,11 @@ def _compare_rig(
         raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
     progress(rig.name, 0.0)
     gaps = find_gaps(build_graph(rig.mesh, GAP_RESOLUTION, connectivity=6))
-    share = vertex_shares(rig.mesh)
     scores = []
     for done, (name, method) in enumerate(methods.items()):
         progress(rig.name, (done + 1) / (len(methods) + 1))
         binding = _attempt(method, rig)
-        scores.append(_score(name, rig, binding, share, gaps, turned))
+        scores.append(_score(name, rig, binding, gaps, turned))
     progress(rig.name, 1.0)
     joints = int(rig.skeleton.deform.sum())
     counts = (len(rig.mesh.vertices), joints, len(rig.clips), len(gaps))
@@ -135,30 +123,12 @@ def _score(
     name: str,
     rig: Rig,
     binding: BaselineBinding,
-    share: NDArray[np.float64],
     gaps: NDArray[np.int32],
     turned: Turned,
 ) -> MethodScore:
-    seconds = float(sum(binding.seconds.values()))
     if binding.weights is None or rig.weights is None:
-        return MethodScore(name, binding.failed, seconds=seconds, warnings=binding.warnings)
-    precision, recall = precision_recall(binding.weights, rig.weights, shares=share)
-    error = deformation_error(rig, binding.weights, rig.weights, joints=turned)
-    clips = [clip.largest for clip in clip_error(rig, binding.weights, rig.weights)]
-    return MethodScore(
-        name,
-        l1=weight_l1(binding.weights, rig.weights, share),
-        precision=_number(precision),
-        recall=_number(recall),
-        deformation=error.mean,
-        clips=float(np.mean(clips)) if clips else None,
-        unweighted=unweighted(binding.weights, share),
-        crosstalk=_number(crosstalk(binding.weights, gaps).mean),
-        seconds=seconds,
-        warnings=binding.warnings,
-        worst=tuple(error.worst(3)),
-    )
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
+        values = dict.fromkeys(METRICS) | {"seconds": float(sum(binding.seconds.values()))}
+        return MethodScore(name, binding.failed, values, binding.warnings)
+    measured = Measured(rig, binding.weights, rig.weights, binding, turned=turned, gaps=gaps)
+    worst = tuple(measured.turns.worst(3))
+    return MethodScore(name, "", measured.values(METRICS), binding.warnings, worst)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from ...metrics import Turn
+from ...metrics import METRICS, Turn
 
 
 @dataclass(frozen=True)
@@ -20,18 +20,9 @@ class MethodScore:
     method : str
     failed : str
         Why there are no weights; empty where there are.
-    l1, precision, recall
-        Of the weights; see `cutcell_lab.metrics`.
-    deformation : float
-        cm², joints turned by 30°.
-    clips : float
-        The same over the file's own clips, their mean.
-    unweighted : float
-        Share of the welded vertices without weight.
-    crosstalk : float
-        Weight shared across gaps.
-    seconds : float
-        All stages together.
+    values : mapping of str to float or None
+        By name of the metric, see `cutcell_lab.metrics.METRICS`. The one that failed has only its
+        seconds.
     warnings : tuple of str
     worst : tuple of Turn
         The joints and axes with the greatest error.
@@ -39,16 +30,22 @@ class MethodScore:
 
     method: str
     failed: str = ""
-    l1: float | None = None
-    precision: float | None = None
-    recall: float | None = None
-    deformation: float | None = None
-    clips: float | None = None
-    unweighted: float | None = None
-    crosstalk: float | None = None
-    seconds: float | None = None
+    values: Mapping[str, float | None] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     worst: tuple[Turn, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the score as plain lists, dicts and numbers, with a key for each metric."""
+        document = asdict(self)
+        return {**document, **document.pop("values")}
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> MethodScore:
+        """Return what `to_dict` was made from."""
+        values = {name: document[name] for name in METRICS if name in document}
+        worst = tuple(Turn(**turn) for turn in document["worst"])
+        warnings = tuple(document["warnings"])
+        return cls(document["method"], document["failed"], values, warnings, worst)
 
 
 @dataclass(frozen=True)
@@ -75,7 +72,7 @@ class RigScore:
 
 @dataclass(frozen=True)
 class Statistic:
-    """One measure of one method over the rigs that have it.
+    """One metric of one method over the rigs that have it.
 
     Parameters
     ----------
@@ -106,17 +103,14 @@ class Comparison:
     rigs: tuple[RigScore, ...]
     methods: tuple[str, ...]
 
-    def statistic(self, method: str, measure: str) -> Statistic:
-        """Summarise a measure, a field of `MethodScore`, over the rigs where a method has it.
-
-        The worst is the lowest precision and recall, and the highest of all else.
-        """
+    def statistic(self, method: str, metric: str) -> Statistic:
+        """Summarise a metric over the rigs where a method has it."""
         index = self.methods.index(method)
-        pairs = [(getattr(rig.scores[index], measure), rig.name) for rig in self.rigs]
+        pairs = [(rig.scores[index].values.get(metric), rig.name) for rig in self.rigs]
         values = [(value, name) for value, name in pairs if value is not None]
         if not values:
             return Statistic(0, None, None, None, "")
-        pick = min if measure in ("precision", "recall") else max
+        pick = max if METRICS[metric].lower_is_better else min
         worst, name = pick(values, key=lambda pair: pair[0])
         numbers = [value for value, _ in values]
         return Statistic(
@@ -137,10 +131,13 @@ class Comparison:
         return {
             "methods": list(self.methods),
             "summary": {
-                method: {name: asdict(self.statistic(method, name)) for name in MEASURES}
+                method: {name: asdict(self.statistic(method, name)) for name in METRICS}
                 for method in self.methods
             },
-            "rigs": [asdict(rig) for rig in self.rigs],
+            "rigs": [
+                {**vars(rig), "scores": [score.to_dict() for score in rig.scores]}
+                for rig in self.rigs
+            ],
         }
 
     @classmethod
@@ -163,19 +160,6 @@ class Comparison:
         return Comparison(tuple(_complete(rig, methods) for rig in rigs.values()), methods)
 
 
-MEASURES = {
-    "l1": "L1",
-    "precision": "precision",
-    "recall": "recall",
-    "deformation": "deformation cm²",
-    "clips": "own clips cm²",
-    "unweighted": "no weight",
-    "crosstalk": "crosstalk",
-    "seconds": "seconds",
-}
-"""The measures, fields of `MethodScore`, and what tables call them."""
-
-
 def _complete(rig: RigScore, methods: Iterable[str]) -> RigScore:
     by_method = {score.method: score for score in rig.scores}
     missing = "not measured"
@@ -186,14 +170,5 @@ def _complete(rig: RigScore, methods: Iterable[str]) -> RigScore:
 
 
 def _rig_score(document: Mapping[str, Any]) -> RigScore:
-    scores = [
-        MethodScore(
-            **{
-                **score,
-                "warnings": tuple(score["warnings"]),
-                "worst": tuple(Turn(**turn) for turn in score["worst"]),
-            }
-        )
-        for score in document["scores"]
-    ]
-    return RigScore(**{**document, "scores": tuple(scores)})
+    scores = tuple(MethodScore.from_dict(score) for score in document["scores"])
+    return RigScore(**{**document, "scores": scores})

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import accumulate
+
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from cutcell.runtime.display import printable, shown_name
 
-from .markdown import text
+from ...metrics import METRICS
 from .scores import Comparison, RigScore
 
-ROOMY = 100
-"""Columns of a terminal from which on all measures are shown."""
-FIELDS = ("l1", "deformation", "clips", "crosstalk", "seconds")
-NUMBERS, ROOMY_NUMBERS = 5 * 5 + 7 + 5 + 8 * 2, 8 + 9 + 2 * 2 + 1
-"""Columns that the summary's numbers take, with the gaps between."""
+HEADLINES = ("l1", "deformation")
+"""Metrics that a summary of several rigs shows with mean and best method."""
+TAKEN = 5 * 5 + 5 + 7 * 2
+"""Columns that the numbers of the headlines and the count of rigs take, with the gaps between."""
+NAME = 6
+"""Columns that the name of the worst rig needs."""
+TURN = 12
+"""Columns that the worst turn needs."""
 
 
 def comparison_table(comparison: Comparison, width: int) -> RenderableType:
@@ -56,19 +62,24 @@ def _add_numbers(table: Table, name: str) -> None:
     table.add_column(name, justify="right", no_wrap=True, min_width=max(5, len(name)))
 
 
+def _fitting(names: Iterable[str], width: int) -> list[str]:
+    """Return the first metrics whose columns fit a width."""
+    columns = {name: 2 + max(5, len(METRICS[name].title)) for name in names}
+    ends = accumulate(columns.values())
+    return [name for name, end in zip(columns, ends, strict=True) if end <= width]
+
+
 def _one_rig(rig: RigScore, width: int) -> Table:
     title = f"{rig.name}: {rig.vertices:,} vertices, {rig.joints} joints with weight"
-    names = ["l1", "precision", "recall", "deformation", "seconds"]
-    heads = ["L1", "precision", "recall", "cm²", "seconds"]
-    if width >= ROOMY:
-        names[4:4], heads[4:4] = ["clips", "crosstalk"], ["clips cm²", "crosstalk"]
-    table = _table(title, "method", *heads)
+    method = max([11, *(len(score.method) for score in rig.scores)])
+    names = _fitting(METRICS, width - method - 2 - TURN)
+    table = _table(title, "method", *(METRICS[name].title for name in names))
     table.add_column("worst turn", no_wrap=True, overflow="ellipsis")
     for score in rig.scores:
         if score.failed:
             table.add_row(score.method, Text("failed", "yellow"))
             continue
-        cells = [text(getattr(score, name), name) for name in names]
+        cells = [METRICS[name].text(score.values.get(name)) for name in names]
         worst = score.worst[0] if score.worst else None
         turn = f"{shown_name(worst.name)}, {worst.axis}" if worst else ""
         table.add_row(score.method, *cells, Text(turn))
@@ -80,22 +91,22 @@ def _summary(comparison: Comparison, width: int) -> Table:
     title = f"{count} rigs: median and mean of the L1 of weights, and of deformation in cm²"
     table = _table(title, "method", "L1", "mean", "cm²", "mean", "worst")
     # Only the name of a rig may be truncated, to the width that the other columns leave.
-    others = max(map(len, comparison.methods)) + NUMBERS + (ROOMY_NUMBERS if width >= ROOMY else 0)
-    table.add_column("on", no_wrap=True, overflow="ellipsis", max_width=max(width - others, 6))
-    for name in ("clips cm²", "crosstalk") if width >= ROOMY else ():
-        _add_numbers(table, name)
-    for name in ("seconds", "rigs"):
-        _add_numbers(table, name)
+    left = width - max([11, *map(len, comparison.methods)]) - TAKEN
+    errors = (name for name in METRICS if METRICS[name].lower_is_better and name not in HEADLINES)
+    others = _fitting(errors, left - NAME)
+    left -= sum(2 + max(5, len(METRICS[name].title)) for name in others)
+    table.add_column("on", no_wrap=True, overflow="ellipsis", max_width=max(left, NAME))
+    for name in others:
+        _add_numbers(table, METRICS[name].title)
+    _add_numbers(table, "rigs")
     for method in comparison.methods:
-        statistics = {name: comparison.statistic(method, name) for name in FIELDS}
-        l1, deformation = statistics["l1"], statistics["deformation"]
-        cells: list[str | Text] = [text(l1.median, "l1"), text(l1.mean, "l1")]
+        l1, deformation = (comparison.statistic(method, name) for name in HEADLINES)
+        cells: list[str | Text] = [METRICS["l1"].text(value) for value in (l1.median, l1.mean)]
         for value in (deformation.median, deformation.mean, deformation.worst):
-            cells.append(text(value, "deformation"))
+            cells.append(METRICS["deformation"].text(value))
         cells.append(Text(shown_name(deformation.worst_rig) if deformation.worst else ""))
-        if width >= ROOMY:
-            cells += [text(statistics[name].median, name) for name in ("clips", "crosstalk")]
-        cells.append(text(statistics["seconds"].median, "seconds"))
+        medians = {name: comparison.statistic(method, name).median for name in others}
+        cells += [METRICS[name].text(value) for name, value in medians.items()]
         missing = l1.count < count
         share = Text(f"{l1.count}/{count}", "yellow" if missing else "")
         table.add_row(method, *cells, share)
@@ -110,13 +121,13 @@ def _rigs(comparison: Comparison) -> Table:
     table.add_column("by", no_wrap=True)
     for rig in comparison.rigs:
         cells: list[str | Text] = [Text(shown_name(rig.name)), f"{rig.vertices:,}", str(rig.joints)]
-        for name in ("l1", "deformation"):
+        for name in HEADLINES:
             values = [
-                (getattr(score, name), score.method)
+                (score.values[name], score.method)
                 for score in rig.scores
-                if score.method != "artist" and getattr(score, name) is not None
+                if score.method != "artist" and score.values.get(name) is not None
             ]
             best, by = min(values, default=(None, ""))
-            cells += [text(best, name), by]
+            cells += [METRICS[name].text(best), by]
         table.add_row(*cells)
     return table

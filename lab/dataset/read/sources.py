@@ -14,8 +14,9 @@ from typing import Any
 from cutcell.errors import CutcellError, FileError
 from cutcell.io import load
 from cutcell.io.files import naming, read_bytes, regular_file
+from cutcell.io.formats import suffixes
+from cutcell.io.formats.rignet import rig_file
 from cutcell.io.gltf.container import beside
-from cutcell.io.rignet import rig_file
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .archive import MEMBER
@@ -25,7 +26,8 @@ from .store import STORE, Store, read_entry
 RAW = "raw_data.npz"
 """UniRig's name for one rig; the folder it is in names the rig."""
 HDF5 = (".h5", ".hdf5")
-FILES = (".glb", ".gltf", ".vrm", ".fbx", ".usd", ".usda", ".usdc", ".usdz", ".npz")
+FILES = set(suffixes("read")) & set(suffixes("read_skeleton")) - {".txt"}
+"""RigNet's files are found by their meshes."""
 RIGNET = (("obj", "rig_info"), ("obj_remesh", "rig_info_remesh"))
 """Matching folders of RigNet: meshes, and rigs of the same names."""
 
@@ -121,8 +123,8 @@ def find_sources(paths: Iterable[Path]) -> list[Source]:
             inside = list(_in_folder(path))
             if not inside:
                 raise FileError(
-                    f"{path}: holds no rigs; what is read is GLB, glTF, VRM, FBX, USD, npz of "
-                    f"Articulation-XL, folders of RigNet's (obj, rig_info), {RAW} and HDF5"
+                    f"{path}: holds no rigs; what is read is {', '.join(sorted(FILES))}, folders "
+                    f"of RigNet's (obj, rig_info), {RAW} and HDF5"
                 )
             sources += inside
         elif path.is_file():

@@ -55,7 +55,7 @@ def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path, in_dispatcher):
             raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("cutcell.editing.bind", interrupted)
+    monkeypatch.setattr("cutcell.binding.bind", interrupted)
     result = run("bind", bar, tmp_path / "out.glb")
     assert result.exit_code == 130
     assert "Traceback" not in result.stderr
@@ -66,7 +66,7 @@ def test_other_errors_of_the_interpreter_go_through(run, bar, monkeypatch, tmp_p
     def fails(*_, **__):
         raise SystemError
 
-    monkeypatch.setattr("cutcell.editing.bind", fails)
+    monkeypatch.setattr("cutcell.binding.bind", fails)
     with pytest.raises(SystemError):
         run("bind", bar, tmp_path / "out.glb")
 
@@ -97,7 +97,7 @@ def test_a_first_compile_is_one_line_where_no_bar_shows_it(
 
     monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels",))
     compile_cache.announce.cache_clear()
-    monkeypatch.setattr("cutcell.editing.bind", compiles)
+    monkeypatch.setattr("cutcell.binding.bind", compiles)
     shown = run("bind", bar, tmp_path / "out.glb", *options)
     assert shown.stdout == ""
     assert len(shown.stderr.splitlines()) == lines + 1
@@ -135,7 +135,7 @@ def long_work(*_, **__):
     os.kill(os.getpid(), signal.SIGINT)
     time.sleep(600)
 
-cutcell.editing.bind = long_work
+cutcell.binding.bind = long_work
 sys.argv = ["cutcell", "bind", {str(bar)!r}, {str(tmp_path / "o.glb")!r}]
 cutcell.cli.app.main()
 """

@@ -41,6 +41,12 @@ def test_doubtful_joints_are_named_and_may_be_left_out(run, tmp_path):
     assert "doubtful · control or bone, by its name" in run("joints", path).stdout
     rows = json.loads(run("joints", path, "--no-deform", "prop", "--json").stdout)["joints"]
     assert [row["doubtful"] for row in rows] == [False] * 3
+    bound = tmp_path / "bound.glb"
+    assert "prop; exclude" in run("bind", path, bound, "--fresh", "-r", "8").stderr
+    again = run("bind", bound, tmp_path / "again.glb", "--fresh", "-r", "8")
+    assert "prop; exclude" in again.stderr, "its weights are forgotten, too"
+    chosen = run("bind", bound, tmp_path / "again.glb", "--fresh", "--deform", "prop", "-r", "8")
+    assert "prop; exclude" not in chosen.stderr, "a person chose it"
 
 
 def test_bind_takes_the_choice(run, demo_paths, tmp_path):

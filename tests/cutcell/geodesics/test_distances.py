@@ -16,8 +16,8 @@ from cutcell import (
     WeightsError,
     bone_segments,
 )
+from cutcell.bones.bones import LONGEST
 from cutcell.geodesics import FALLBACK_REASONS, bone_samples
-from cutcell.geodesics.bones import LONGEST
 from cutcell.geodesics.fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
 from cutcell.geometry.segments import distance_to_segment
 from tests import meshes, naive

@@ -16,7 +16,7 @@ from cutcell.geodesics.tracing.inside import TOLERANCE
 from cutcell_assets import demo_path
 from cutcell_lab.benchmarks.paths import outside_by, samples_of
 from tests import meshes
-from tests.cutcell.geodesics.test_any_angle import l_bar
+from tests.cutcell.animation.test_any_angle import l_bar
 from tests.paper import bone_distances, build_graph
 
 SKELETON = Skeleton([[0.9, 0.1, 0.12], [0.8, 0.1, 0.12]], [-1, 0], deform=[True, False])

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from cutcell import TriangleMesh
-from cutcell.geodesics.bones import Sources
+from cutcell.bones.bones import Sources
 from cutcell.geodesics.shortest_paths import BATCH, shortest_paths
 from tests import meshes, naive
 from tests.paper import build_graph

@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import cutcell
-from cutcell.io.inputs import BEGINNINGS
+from cutcell.io.formats import BY_SUFFIX
 from tests.cutcell.io.fbx_builder import binary, column_scene, old_text
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, column
 from tests.cutcell.io.test_usd import text as usd_text
@@ -108,7 +108,7 @@ def test_nothing_is_left_behind(contents, tmp_path, monkeypatch):
 
 
 def test_beginnings_are_told_apart(contents):
-    assert set(BEGINNINGS) >= {f".{name.rpartition('.')[2]}" for name in NAMES}
+    assert set(BY_SUFFIX) >= {f".{name.rpartition('.')[2]}" for name in NAMES}
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from cutcell import dual_quaternion_skinning, linear_blend_skinning
 from cutcell.errors import ParameterError
 from cutcell.pose import axis_rotation
 from cutcell.pose.dual_quaternions import TIE, rotation_quaternions
-from cutcell.pose.skin import MAX_INFLUENCES, Gap, Skin
+from cutcell_viewers.skin import MAX_INFLUENCES, Gap, Skin
 
 SEEDS = st.integers(0, 2**32 - 1)
 

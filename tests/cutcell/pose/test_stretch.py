@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 
 import cutcell
+from cutcell.binding.warnings import with_warnings
 from cutcell.editing import Edits
-from cutcell.editing.binding_warnings import with_warnings
 from cutcell.graph import MESH, build_graph
 from cutcell.pose import stretch as module
 from cutcell.pose.stretch import MAX_SHARE, measure_stretch
@@ -103,7 +104,7 @@ def test_bindings_and_checks_warn_of_it():
     binding = cutcell.bind(WORM, 16)
     assert binding.stretch.share < MAX_SHARE
     assert CODE not in {getattr(text, "code", "") for text in binding.warnings}
-    worse = with_warnings(WORM, replace(binding, weights=spiked()), Edits())
+    worse = with_warnings(WORM, replace(binding, rows=csr_array(spiked())), Edits())
     assert worse.stretch.share > MAX_SHARE
     warning = next(text for text in worse.warnings if getattr(text, "code", "") == CODE)
     name = WORM.skeleton.names[worse.stretch.joint]
@@ -122,7 +123,7 @@ def test_a_binding_measures_it_once(monkeypatch):
         measured.append(measure_stretch(*inputs))
         return measured[-1]
 
-    monkeypatch.setattr("cutcell.binding.measure_stretch", measure)
+    monkeypatch.setattr("cutcell.binding.binding.measure_stretch", measure)
     binding = cutcell.bind(WORM, 16)
     assert [binding.stretch] == measured
 

@@ -179,7 +179,9 @@ def test_a_comparison_of_nasty_names(capsys, monkeypatch):
     name = TestConsole.text + "|"
     turn = Turn(0, name, "x", 1.0, 1.0)
     scores = (
-        MethodScore("euclidean", l1=1.0, deformation=1.0, seconds=1.0, worst=(turn,)),
+        MethodScore(
+            "euclidean", values={"l1": 1.0, "deformation": 1.0, "seconds": 1.0}, worst=(turn,)
+        ),
         MethodScore("bone_heat", failed=name),
     )
     rig = RigScore(name, 3, 2, 0, 0, scores)

@@ -1,0 +1,210 @@
+"""Conditions on vertices, such as `weight of hand.L > 0.1 and distance > 0.3`."""
+
+import operator
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.checks import LONG, shown
+from cutcell.editing.locks import joint_index
+from cutcell.editing.selections import Neighbours
+from cutcell.errors import ParameterError, WeightsError
+from cutcell.geodesics import BoneDistances
+from cutcell.rig import Rig
+
+MAX_LENGTH = 1000
+MAX_DEPTH = 40
+"""Parentheses and negations inside each other."""
+EQUAL = 1e-6
+"""Values that differ by no more are equal."""
+OPENING, CLOSING = re.compile(r"\("), re.compile(r"\)")
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?(%?)", re.IGNORECASE)
+OPERATOR = re.compile(r"<=|>=|==|!=|[<>=≤≥≠]")
+QUOTED = re.compile(r"""(["'])(.*?)\1""")
+NAME_END = re.compile(r"\s|[<>=!≤≥≠)]|$")
+BARE_NAME = re.compile(r"(.*?)(?=\s+(?:and|or)\b|\s*[<>=!≤≥≠)]|\s*$)", re.IGNORECASE)
+
+Value = NDArray[np.float64] | float
+COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
+    "≤": operator.le, "≥": operator.ge,
+    "=": lambda a, b: np.isclose(a, b, rtol=0, atol=EQUAL),
+    "!=": lambda a, b: ~np.isclose(a, b, rtol=0, atol=EQUAL),
+}  # fmt: skip
+COMPARISONS |= {"==": COMPARISONS["="], "≠": COMPARISONS["!="]}
+
+
+def vertices_where(
+    condition: str,
+    rig: Rig,
+    weights: NDArray[np.float64],
+    *,
+    neighbours: Neighbours | None = None,
+    distances: BoneDistances | None = None,
+) -> NDArray[np.bool_]:
+    """Return which vertices a condition holds for, shape (n,).
+
+    A condition compares values by <, <=, >, >=, = and !=, and joins comparisons by `and`, `or`,
+    `not` and parentheses. Values are numbers, also in percent, and of each vertex: `weight of J`,
+    `file weight of J`, `distance to J` and `distance` through the body in the file's units,
+    `influences` and `part`, the number of its connected component, from 1, the largest. J is the
+    name of a joint, in quotes if it is ambiguous. `distance` alone is that to the joint named
+    before it, or else to the nearest.
+
+    Parameters
+    ----------
+    condition : str
+    rig : Rig
+    weights : array, shape (n, j)
+    neighbours : Neighbours, optional
+        Of the rig's mesh; found if they are needed.
+    distances : BoneDistances, optional
+        Of the rig. Conditions on distances need them.
+
+    Raises
+    ------
+    ParameterError
+        The condition cannot be read, names no joint of the rig, or needs distances.
+    WeightsError
+        It compares weights of the file, which has none.
+    """
+    if len(condition) > MAX_LENGTH:
+        raise ParameterError(f"a condition may have {MAX_LENGTH:,} characters at most")
+    holds = _Parser(condition, rig, weights, neighbours, distances).whole()
+    return np.array(np.broadcast_to(holds, len(rig.mesh.vertices)))
+
+
+@dataclass
+class _Parser:
+    """Reads a condition from left to right, and evaluates it on the way."""
+
+    _text: str
+    _rig: Rig
+    _weights: NDArray[np.float64]
+    _neighbours: Neighbours | None
+    _distances: BoneDistances | None
+    _at: int = 0
+    _depth: int = 0
+    _joint: int | None = None
+
+    def whole(self) -> Any:
+        result = self._either()
+        if self._rest():
+            self._fail("`and`, `or` or the end")
+        return result
+
+    def _either(self) -> Any:
+        result = self._both()
+        while self._word("or"):
+            result = result | self._both()
+        return result
+
+    def _both(self) -> Any:
+        result = self._one()
+        while self._word("and"):
+            result = result & self._one()
+        return result
+
+    def _one(self) -> Any:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise ParameterError(f"a condition may be nested {MAX_DEPTH} times at most")
+        if self._word("not"):
+            result = np.logical_not(self._one())
+        elif self._match(OPENING):
+            result = self._either()
+            if not self._match(CLOSING):
+                self._fail("a closing parenthesis")
+        else:
+            result = self._comparison()
+        self._depth -= 1
+        return result
+
+    def _comparison(self) -> Any:
+        """Compare two values, or several in a chain."""
+        left, result = self._value(), None
+        while sign := self._match(OPERATOR):
+            right = self._value()
+            holds = np.asarray(COMPARISONS[sign.group()](left, right))
+            left, result = right, holds if result is None else result & holds
+        if result is None:
+            self._fail("<, <=, >, >=, = or !=")
+        return result
+
+    def _value(self) -> Value:
+        if number := self._match(NUMBER):
+            text = number.group().rstrip("%")
+            return float(text) / (100 if number.group(3) else 1)
+        weights = self._rig.weights if (of_file := self._word("file")) else self._weights
+        if self._word("weight"):
+            if not self._word("of"):
+                self._fail("`of` and a joint")
+            if weights is None:
+                raise WeightsError(f"{self._rig.name} has no weights of its own to compare")
+            return np.asarray(weights[:, self._named()])
+        if of_file:
+            self._fail("`weight of` and a joint")
+        if self._word("distance"):
+            if self._word("to"):
+                self._named()
+            return self._distance()
+        if self._word("influences"):
+            return (self._weights > 0).sum(axis=1).astype(float)
+        if self._word("part"):
+            self._neighbours = self._neighbours or Neighbours.of(self._rig.mesh)
+            return self._neighbours.component.astype(float) + 1
+        self._fail("a number, weight, file weight, distance, influences or part")
+
+    def _distance(self) -> Value:
+        if self._distances is None:
+            raise ParameterError("distances are compared once the character is bound; bind it")
+        size, joint = self._distances.graph.lattice.size, self._joint
+        if joint is None:
+            return np.asarray(self._distances.least * size, float)
+        if not self._rig.skeleton.deform[joint]:
+            name = self._rig.skeleton.names[joint]
+            raise ParameterError(f'"{name}" carries no weight, so there is no distance to it')
+        return np.asarray(self._distances.on_mesh(joint) * size)
+
+    def _named(self) -> int:
+        """Read the name of a joint, without quotes the longest that the skeleton has."""
+        if quoted := self._match(QUOTED):
+            name = quoted.group(2)
+        else:
+            rest = self._rest()
+            fits = [one for one in self._rig.skeleton.names if one and _begins(rest, one)]
+            fits = fits or BARE_NAME.findall(rest)[:1]
+            name = max(fits, key=lambda one: (len(one), rest.startswith(one)))
+            if not name:
+                self._fail("a joint")
+            self._at += len(name)
+        self._joint = joint_index(self._rig.skeleton, name)
+        return self._joint
+
+    def _rest(self) -> str:
+        self._at += len(self._text[self._at :]) - len(self._text[self._at :].lstrip())
+        return self._text[self._at :]
+
+    def _match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+        match = pattern.match(self._rest())
+        self._at += 0 if match is None else match.end()
+        return match
+
+    def _word(self, word: str) -> bool:
+        return self._match(re.compile(rf"{word}\b", re.IGNORECASE)) is not None
+
+    def _fail(self, expected: str) -> NoReturn:
+        rest = self._rest()
+        where = f"at character {self._at + 1}, {shown(rest[:LONG])}" if rest else "at its end"
+        example = 'weight of "hand.L" > 0.1'
+        raise ParameterError(f"the condition needs {expected} {where}; write for example {example}")
+
+
+def _begins(text: str, name: str) -> bool:
+    """Return whether a text begins with a name, in whatever case, and the name ends there."""
+    same = text[: len(name)].lower() == name.lower()
+    return same and NAME_END.match(text[len(name) :]) is not None

@@ -1,0 +1,1 @@
+"""The method for animation: paths at any angle, bone extents, and a falloff for rigs."""

@@ -1,0 +1,89 @@
+"""The falloff for rigs: weights that animate well, from geodesic distances (docs/falloff.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...geodesics import BoneDistances
+from ...rig.rows import rows_of_entries, scaled, with_data
+from ...runtime.progress import Tell, share_of
+from ...runtime.threads import run_parallel
+from .adjustments import Adjustments
+from .containment import make_rigid
+from .diffusion import Diffusion
+from .division import Division
+from .garments import drape
+from .rigid_accessories import attach_accessories
+from .surface_operators import SurfaceOperators, surface_of
+
+TAIL = 0.05
+"""Part of a vertex's largest weight that is subtracted from all its weights, so that they end."""
+
+
+@dataclass(frozen=True, eq=False)
+class RigFalloff:
+    """The falloff over one surface, ready to compute weights.
+
+    Parameters
+    ----------
+    distances : BoneDistances
+    surface : SurfaceOperators
+    division : Division
+        The surface divided among the joints.
+    diffusion : Diffusion
+        Diffusion over the surface.
+    independent : array, shape (components,), bool
+        Which connected components are never rigid.
+    """
+
+    distances: BoneDistances
+    surface: SurfaceOperators
+    division: Division
+    diffusion: Diffusion
+    independent: NDArray[np.bool_]
+
+    @classmethod
+    def over(cls, distances: BoneDistances, adjustments: Adjustments | None = None) -> RigFalloff:
+        """Divide the surface of a graph by distances; prepare its diffusion by the nearest."""
+        graph = distances.graph
+        surface, rows = surface_of(graph), distances.rows
+        depth = np.minimum.reduceat(rows.data, rows.indptr[:-1])
+        division, diffusion = run_parallel(
+            lambda: Division.by(distances, surface, adjustments),
+            lambda: Diffusion.over(surface, depth, graph.lattice.resolution),
+        )
+        independent = np.zeros(len(division.containment), np.bool_)
+        if adjustments is not None:
+            independent[surface.component[adjustments.independent]] = True
+        return cls(distances, surface, division, diffusion, independent)
+
+    def steps(self, report: Tell) -> Iterator[tuple[str, csr_array]]:
+        """Yield the name of each step and the weights (k, j) of welded vertices after it."""
+        weights = self.division.weights
+        yield "falloff", weights
+        weights = self.diffusion.spread(weights, share_of(report, 0.4, 0.8))
+        yield "spread", weights
+        weights = self.with_rigid_parts(weights)
+        yield "rigid", weights
+        yield "tail", without_tail(weights)
+
+    def with_rigid_parts(self, weights: csr_array) -> csr_array:
+        """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
+        graph, surface, independent = self.distances.graph, self.surface, self.independent
+        containment = self.division.containment
+        if len(containment) > 1:
+            weights = drape(graph, surface, containment, self.diffusion, weights, independent)
+            weights = make_rigid(surface, weights, independent)
+        return attach_accessories(graph, surface, containment, weights, independent)
+
+
+def without_tail(weights: csr_array) -> csr_array:
+    """Subtract a part of each vertex's largest weight from all of them."""
+    tail = TAIL * weights.max(axis=1).toarray()
+    weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
+    return scaled(weights, 1 / weights.sum(axis=1))

@@ -1,0 +1,111 @@
+"""Rigid accessories: small components without bones follow what they are attached to."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...bones.nearest import NodeTree
+from ...geometry.vectors import TIE
+from ...graph import CutCellGraph
+from ...rig.rows import scaled, single, strongest, with_rows
+from .components import SMALL, longest_sides
+from .containment import ramp
+from .surface_operators import SurfaceOperators
+
+CONTACT = 1.0
+"""Lattice cells: an accessory touches the body wherever it is at most this much farther from it
+than at its nearest vertex."""
+DOMINANT = 0.6, 0.65
+"""An accessory follows one joint alone that has the second part of the body's weight where they
+touch, or is the strongest on as much of the contact; up to the first, the mean of the weights."""
+
+
+def attach_accessories(
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    containment: NDArray[np.float64],
+    weights: csr_array,
+    independent: NDArray[np.bool_],
+) -> csr_array:
+    """Make small components without bones rigid: eyes, buttons, horns, armour.
+
+    Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
+
+    Shapes: containment (components, j), weights (k, j), independent (components,); returns (k, j).
+    """
+    points, component, areas = surface.points, surface.component, surface.areas
+    # A component without area, such as a vertex without a face, touches nothing.
+    has_area = np.bincount(component, areas, len(containment)) > 0
+    is_small = longest_sides(points, component) <= SMALL
+    is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
+    if not is_accessory.any():
+        return weights
+    on_body = ~is_accessory[component]
+    # A mesh that is in patches all over is no body with things on it.
+    if areas[on_body].sum() < areas.sum() / 2:
+        return weights
+    return attach(graph, surface, is_accessory, weights)
+
+
+def attach(
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    is_accessory: NDArray[np.bool_],
+    weights: csr_array,
+) -> csr_array:
+    """Make some components, shape (components,), rigid to the others where they touch them.
+
+    `weights` and what is returned have the shape (k, j).
+    """
+    points, component, areas = surface.points, surface.component, surface.areas
+    on_body = ~is_accessory[component]
+    attached = np.flatnonzero(~on_body)
+    distance, mean = nearest_on_body(graph, on_body, points[attached])
+    label = component[attached]
+    least = np.full(len(is_accessory), np.inf)
+    np.minimum.at(least, label, distance)
+    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution + TIE)
+    rows = _contact_weights(
+        (mean @ weights)[touching],
+        areas[attached[touching]] + 1e-12,
+        label[touching],
+        len(is_accessory),
+    )
+    return with_rows(weights, attached, rows[label])
+
+
+def _contact_weights(
+    touched: csr_array, areas: NDArray[np.float64], component: NDArray[np.int32], components: int
+) -> csr_array:
+    """Average the weights touched (c, j) over each component's contact: (components, j)."""
+    joints = touched.shape[1]
+    entries = areas, (component, np.arange(len(component)))
+    gather = csr_array(entries, (components, len(component)))
+    gather = scaled(gather, 1 / np.maximum(gather.sum(axis=1), 1e-300))
+    mean = gather @ touched
+    mean.sort_indices()
+    share = mean.maximum(gather @ single(strongest(touched), joints))
+    alone = ramp(share.max(axis=1).toarray(), *DOMINANT)
+    return scaled(mean, 1 - alone) + scaled(single(strongest(share), joints), alone)
+
+
+def nearest_on_body(
+    graph: CutCellGraph, on_body: NDArray[np.bool_], points: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], csr_array]:
+    """Measure from points to the body's surface: its vertices, and where rays hit it.
+
+    Returns the distances (p,), and the matrix (p, k) that makes weights of welded vertices the
+    weights at the points: the means over the corners of the faces that their nearest nodes are on.
+    """
+    first = graph.first_surface
+    chosen = np.zeros(len(graph.nodes), np.bool_)
+    chosen[: len(on_body)] = on_body
+    chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
+    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
+    corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
+    part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)
+    mean = csr_array((part, (np.repeat(of, 3), corners.ravel())), (len(points), len(on_body)))
+    return distance[np.searchsorted(of, np.arange(len(points)))], mean

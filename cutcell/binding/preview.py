@@ -1,0 +1,92 @@
+"""Approximate weights while joints are being moved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..animation.falloff.adjustments import Adjustments
+from ..animation.falloff.division import Division
+from ..animation.falloff.pipeline import RigFalloff, without_tail
+from ..editing.edited import adjustments_of, joints_measured
+from ..editing.layers.contents import Computed
+from ..geodesics import BoneDistances
+from ..geodesics.moved import MovedDistances
+from ..method import Method
+from ..rig import Rig
+from ..rig.rows import with_data
+from ..weights.skinning_weights import keep_strongest, skinning_weights
+from .binding import Binding
+
+UNSEEN = 1e-3
+"""Difference of weights whose colours differ by less than one of 256 shades."""
+
+
+class Preview:
+    """Approximate weights of a rig whose joints are being moved, from a binding.
+
+    Only the distances of changed bones are measured. With the falloff "rig", only the surface near
+    them is divided again, and only joints whose share has changed are spread. `cutcell.bind`
+    computes the exact weights.
+
+    Parameters
+    ----------
+    rig : Rig
+    binding : Binding
+        Of the rig.
+    method : Method
+    reach : Computed, optional
+        Gains and radii of the binding.
+    """
+
+    def __init__(
+        self, rig: Rig, binding: Binding, method: Method, reach: Computed | None = None
+    ) -> None:
+        self._binding, self._method = binding, method
+        self._adjustments = adjustments_of(rig, binding.graph, reach or Computed())
+        within = joints_measured(reach or Computed(), method)[1]
+        self._distances = MovedDistances(binding.distances, method, within)
+        self._falloff: _IncrementalFalloff | None = None
+        if method.falloff == "rig":
+            self._falloff = _IncrementalFalloff(binding.distances, self._adjustments)
+
+    def bind(self, rig: Rig) -> Binding:
+        """Return about the binding of the rig with its joints elsewhere."""
+        distances, method = self._distances.measure(rig.skeleton), self._method
+        if self._falloff is None:
+            weights = skinning_weights(distances, method=method, adjustments=self._adjustments)
+            rows = csr_array(weights)
+        else:
+            options = method.max_influences, method.threshold
+            welded = keep_strongest(distances, self._falloff.weights(distances), *options)
+            rows = welded[distances.graph.vertex_node]
+        return replace(self._binding, distances=distances, rows=rows)
+
+
+class _IncrementalFalloff:
+    """The falloff "rig" after small changes of few distances.
+
+    The matrix of the diffusion stays, and only joints whose share of the surface has changed
+    noticeably are spread again.
+    """
+
+    def __init__(self, distances: BoneDistances, adjustments: Adjustments | None) -> None:
+        self._falloff, self._adjustments = RigFalloff.over(distances, adjustments), adjustments
+        self._spread = self._falloff.diffusion.equilibrium(self._falloff.division.weights)
+
+    def weights(self, distances: BoneDistances) -> csr_array:
+        """Return the weights (k, j) of welded vertices for changed distances."""
+        before, diffusion = self._falloff.division, self._falloff.diffusion
+        division = Division.by(distances, before.surface, self._adjustments)
+        is_changed = abs(division.weights - before.weights).max(axis=0).toarray() > UNSEEN
+        changed = _of_joints(division.weights, is_changed)
+        weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
+        weights = diffusion.whole(weights, division.weights)
+        return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))
+
+
+def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
+    return with_data(rows, rows.data * which[rows.indices])

@@ -1,0 +1,1 @@
+"""Bones, and the nodes of the graph that are nearest to them (paper, algorithm 2)."""
