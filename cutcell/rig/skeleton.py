@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign, shown
 from ..errors import SkeletonError
 from ..runtime.display import listed
 from ..runtime.repr import Summarized
-from .checks import as_array, assign, check_finite, frozen, shown
+from .checks import as_array, check_finite, frozen
 from .names import is_neutral
 
 LONG_CYCLE = 10

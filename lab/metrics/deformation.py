@@ -8,9 +8,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.rig.checks import check_choice, check_number
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
