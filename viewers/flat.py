@@ -17,13 +17,13 @@ from cutcell.geodesics import Bones
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
 from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph
-from cutcell.graph.sections import RaySlice, slice_rays
 from cutcell.method import Method
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .distance_scene import unit_of
 from .plane_section import plane_outline
+from .ray_slice import RaySlice, slice_rays
 from .slice_scene import file_axis, slice_place
 
 MAX_NODES = 2000
