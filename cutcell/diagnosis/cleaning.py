@@ -157,7 +157,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
 def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the remaining part of each weight, shape (n, j)."""
     welded, distances = subject.welded, subject.distances
-    through = distances.all_joints(subject.progress).T
+    through = distances.of_all_joints(subject.progress).joint.T
     at_welded = np.zeros((len(subject.points), weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)

@@ -23,7 +23,7 @@ from ..graph.winding.boundary import find_boundary
 from ..graph.winding.treecode.caps import smallest_caps
 from ..graph.winding.treecode.cells import classify_cells
 from ..graph.winding.treecode.clusters import build_tree
-from ..method import ANIMATION, RIG_REACH
+from ..method import ANIMATION
 from ..runtime import compile_cache
 from ..runtime.subprocesses import python_environment
 from ..runtime.threads import threads
@@ -109,7 +109,8 @@ def _compile_after(graph: CutCellGraph) -> None:
     """Compile what a binding needs once it has its graph."""
     methods = ANIMATION, ANIMATION.with_options(falloff="paper")
     for method in methods:  # which measure from different numbers of joints
-        distances = bone_distances(graph, chain(), method=method, leaf="fit", within=RIG_REACH)
+        within = ANIMATION.reach_needed
+        distances = bone_distances(graph, chain(), method=method, leaf="fit", within=within)
     for method in methods:
         skinning_weights(distances, method=method)
     every = np.ones(distances.joint.shape[::-1], bool)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...checks import check_choice, check_integer, check_number
 from ...errors import ParameterError
 from ...method import check_resolution
 from ...rig import TriangleMesh
-from ...rig.checks import check_choice, check_integer, check_number
 from ..lattice import Lattice
 from ..libraries import CASTERS, fast_winding_numbers
 from ..rays import AXES, cast_rays, part_at_contacts, points_on_rays
