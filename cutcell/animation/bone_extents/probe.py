@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...bones.nearest import NodeTree
+from ...bones.nearest import NodeGrid
 from ...geometry.segments import closest_on_segment
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
@@ -33,12 +33,12 @@ class BodyProbe:
     ----------
     graph : CutCellGraph
         Points are in its unit cube.
-    tree : NodeTree
+    grid : NodeGrid
         Of its nodes.
     """
 
-    def __init__(self, graph: CutCellGraph, tree: NodeTree) -> None:
-        self._tree = tree
+    def __init__(self, graph: CutCellGraph, grid: NodeGrid) -> None:
+        self._grid = grid
         self.lattice, self.resolution = graph.lattice, graph.lattice.resolution
         interior = graph.interior
         column = np.repeat(np.arange(self.resolution**2), np.diff(interior.start))
@@ -60,7 +60,7 @@ class BodyProbe:
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return whether the body is in or beside the lattice cell of each point (..., 3)."""
         points = np.asarray(points, np.float64)
-        return self._tree.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
+        return self._grid.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
 
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
