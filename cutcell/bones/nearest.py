@@ -70,18 +70,16 @@ class NodeGrid:
     def near(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return for each point (p, 3) whether a node is in its lattice cell or next to it."""
         # Points far outside are moved to where they still have no neighbour in the cube.
-        key, is_near = self._keys(np.clip(points, -1, 2)), np.zeros(len(points), np.bool_)
-        for x, y in np.ndindex(3, 3):
-            # Three cells in a row have consecutive keys.
-            low = key + ((x - 1) * CELLS_ACROSS + y - 1) * CELLS_ACROSS - 1
-            first, last = np.searchsorted(self._cells, [low, low + 3])
-            is_near |= first < last
+        key, (x, y) = self._keys(np.clip(points, -1, 2)), np.indices((3, 3)).reshape(2, 9, 1) - 1
+        lowest = key + (x * CELLS_ACROSS + y) * CELLS_ACROSS - 1  # of three cells in a row
+        following = self._cells[np.searchsorted(self._cells, lowest)]
+        is_near: NDArray[np.bool_] = (following < lowest + 3).any(axis=0)
         return is_near
 
     @cached_property
     def _cells(self) -> NDArray[np.int64]:
-        """The key of the lattice cell of each node, ascending."""
-        return np.sort(self._keys(self._points))
+        """The key of the lattice cell of each node, ascending, and one beyond all."""
+        return np.append(np.sort(self._keys(self._points)), np.iinfo(np.int64).max)
 
     def _keys(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the key of the lattice cell of each point (p, 3)."""
