@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.bones.bones import Sources
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 from cutcell.geodesics import Bones
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
@@ -232,4 +232,4 @@ def _sources(graph: CutCellGraph, bones: Bones | None, samples: int) -> Sources:
     if bones is None or not len(graph.edges):
         none = np.empty(0, np.int32)
         return Sources(none, none, np.empty(0))
-    return find_sources(graph, bones, samples, NodeTree.of(graph))
+    return find_sources(graph, bones, samples, NodeGrid.of(graph))
