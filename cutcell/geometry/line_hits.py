@@ -117,7 +117,7 @@ def _cell(coordinate, columns):
     return min(max(int(coordinate * columns), 0), columns - 1)
 
 
-@compiled
+@no_refcount
 def column_span(vertices, faces, f, pu):
     """Intersect the line u = pu with the triangle f.
 
@@ -140,7 +140,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@compiled(inline="always")
+@no_refcount
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its left end.
 
@@ -153,7 +153,7 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@compiled(inline="always")
+@no_refcount
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)

@@ -1,4 +1,4 @@
-"""Closest points on triangles."""
+"""Closest points of triangles."""
 
 import numpy as np
 from numpy.typing import NDArray
