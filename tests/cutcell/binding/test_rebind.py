@@ -70,7 +70,7 @@ def test_a_graph_of_another_mesh_is_refused(change):
     with pytest.raises(ParameterError):
         cutcell.fit_skeleton(mesh, "biped", graph=graph)
     with pytest.raises(ParameterError):
-        cutcell.bind(RIG, 16, graph=replace(graph, faces=graph.faces[::2]))
+        cutcell.bind(RIG, 16, graph=replace(graph, edges=graph.edges[::2]))
 
 
 def test_distances_of_something_else_are_refused():
