@@ -87,12 +87,12 @@ class CellClasses(NamedTuple):
 def classify_cells(
     clusters: Clusters,
     resolution: int,
-    winding_threshold: float,
+    tau: float,
     report: Tell = lambda done: None,
 ) -> CellClasses:
     """Bound the winding number of the caps over the cells of the lattice."""
     blocks = -(-resolution // BLOCK)
-    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
+    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(tau)), np.int32)
     corners, top = np.zeros((0, 3), np.int64), BLOCK
     if len(clusters.apex):
         while 4 * top < resolution:
@@ -102,7 +102,7 @@ def classify_cells(
     sizes = []
 
     def classify(corner: NDArray[np.int64]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        parts = _classify(clusters, resolution, winding_threshold, corner, top, coarse)
+        parts = _classify(clusters, resolution, tau, corner, top, coarse)
         sizes.append(sum(array.nbytes for array in parts))
         if sum(sizes) > UNCHECKED:  # they are copied twice below
             check_room(2.0 * sum(sizes), "the cells near holes", "choose a lower resolution")
