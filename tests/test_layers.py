@@ -167,7 +167,6 @@ def test_the_method_of_the_paper_reads_alone():
         ROOT / "cutcell" / name
         for name in (
             "geodesics/solver.py",
-            "geodesics/moved.py",
             "geodesics/tracing/inside.py",
             "weights/skinning_weights.py",
         )
