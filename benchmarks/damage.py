@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 import cutcell
 from cutcell import Rig
 from cutcell.editing.symmetry import find_mirror
-from cutcell.io.gltf.read.accessors import find_accessor
-from cutcell.io.gltf.read.primitives import influence_sets
+from cutcell.io.gltf.read.primitives import primitives
 from cutcell.io.gltf.read.read import GltfSource
 from cutcell_lab.benchmarks.rigs import SHARED
 from tests.bars import legs
@@ -138,12 +137,11 @@ def stored_rows(rig: Rig, sets: int = 2) -> list[NDArray[np.void]]:
     rows = []
     for part in source.parts:
         mesh, k = part.primitives[0]
-        named = document.json["meshes"][mesh]["primitives"][k]["attributes"]
+        primitive = primitives(document, mesh)[k]
         both = []
         for name in ("JOINTS", "WEIGHTS"):
             values = [
-                find_accessor(document, named[f"{name}_{n}"], "VEC4", part.label).stored()
-                for n in influence_sets(named)
+                primitive.accessor(f"{name}_{n}", "VEC4").stored for n in primitive.influence_sets
             ]
             empty = np.zeros_like(values[0])  # a set that another file has more
             both.append(np.hstack([*values, *[empty] * (sets - len(values))]))

@@ -19,13 +19,12 @@ import numpy as np
 
 import cutcell
 from cutcell.io import is_avatar, keeps_document
-from cutcell.io.formats import suffixes
-from cutcell.io.formats.gltf import SUFFIXES as GLTF
+from cutcell.io.formats import GLTF, suffixes
+from cutcell.io.formats.rignet import word_names
 from cutcell.io.gltf.container import Document
 from cutcell.io.gltf.read.accessors import read_accessor
 from cutcell.io.gltf.read.read import GltfSource
 from cutcell.io.materials.transfer import has_materials
-from cutcell.io.rignet import word_names
 from cutcell_lab.benchmarks.rigs import ROOT, SHARED
 from cutcell_lab.benchmarks.tables import Table, publish
 from tests.gltf_validator.validator import reports

@@ -74,7 +74,7 @@ Path("a.tri").write_text("# triangles\\n0 0 0 1 0 0 0 1 0\\n")
 for source in ("a.tri", Path("a.tri").read_bytes()):
     assert len(cutcell.load(source).mesh.faces) == 1
 assert ".tri (triangles as text)" in _RIG.help
-assert set(listed(Path("docs/formats.md"))) == {frozenset(f.SUFFIXES) for f in FORMATS}
+assert set(listed(Path("docs/formats.md"))) == {frozenset(f.suffixes) for f in FORMATS}
 """
 
 

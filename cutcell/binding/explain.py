@@ -219,7 +219,8 @@ def _traced(
     trace = Trace(vertex, method, distances, rig.allowed, adjustments, falloff)
     rows = trace.rows
     for step in weight_steps(distances, method, rig.allowed, adjustments, falloff, progress):
-        row = step.weights[graph.vertex_node[vertex] if step.welded else vertex].copy()
+        number = graph.vertex_node[vertex] if step.welded else vertex
+        row = step.weights[[number]].toarray()[0]
         if step.name == "normalise":
             rows["limit"] = np.where(row > 0, trace.last, 0.0)
         rows[step.name] = row

@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
-from ..io.formats.gltf import SUFFIXES as GLTF
+from ..io.formats import GLTF
 from . import options as given
 from .console import for_people, print_result, progress_bars
 from .report import described, report_rows

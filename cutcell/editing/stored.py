@@ -16,7 +16,7 @@ from .. import __version__
 from ..errors import FileError, ParameterError
 from ..io import save
 from ..io.files import naming
-from ..io.formats.gltf import SUFFIXES as GLTF
+from ..io.formats import GLTF
 from ..io.gltf.container import json_bytes, pack_glb, read_document
 from ..method import ANIMATION, Method
 from ..rig import Rig

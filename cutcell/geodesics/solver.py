@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..animation.any_angle.contraction import Contraction, contract
 from ..animation.any_angle.theta_star import any_angle_paths, least_distances
@@ -14,6 +15,7 @@ from ..animation.bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_
 from ..bones.bones import Bones, Sources, bone_samples, bone_segments
 from ..bones.nearest import NodeTree
 from ..geometry.segments import distance_to_segment
+from ..geometry.sparse_rows import from_dense, least
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Skeleton
@@ -91,11 +93,11 @@ class BoneDistanceSolver:
 
     def _leaf_distances(
         self, bones: Bones, sources: Sources, aimed: NDArray[np.bool_], progress: Progress
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Compute distances of joints with aimed bones (t, k), and of the nearest joint (k,)."""
+    ) -> tuple[csr_array, NDArray[np.float64]]:
+        """Compute distances of joints with aimed bones (k, t), and of the nearest joint (k,)."""
         if self.contraction is None:
             every = self.paths(bones, sources, progress=progress)
-            return every[np.isin(np.unique(bones.joint), bones.joint[aimed])], every.min(axis=0)
+            return every[:, np.isin(np.unique(bones.joint), bones.joint[aimed])], least(every)
         # Most of the body is in no leaf bone's region: there only the nearest joint matters.
         nearest = self.nearest_distance(bones, sources, progress)
         assert nearest is not None
@@ -126,8 +128,8 @@ class BoneDistanceSolver:
         nearest_distance: NDArray[np.float64] | None = None,
         progress: Progress = silent,
         targets: NDArray[np.int32] | None = None,
-    ) -> NDArray[np.float64]:
-        """Compute the distances of the joints that have bones, ascending, to targets: (j, t)."""
+    ) -> csr_array:
+        """Compute the distances of the joints that have bones, ascending, to targets: (t, j)."""
         targets = self.targets if targets is None else targets
         if self.contraction is not None:
             return any_angle_paths(
@@ -141,7 +143,7 @@ class BoneDistanceSolver:
         pairs = np.stack([owner, sources.node])[:, order]
         first = order[np.diff(pairs, prepend=-1).any(axis=0)]
         of_joints = Sources(sources.node[first], owner[first], sources.distance[first])
-        return shortest_paths(self.graph, of_joints, len(joints), targets, progress)
+        return from_dense(shortest_paths(self.graph, of_joints, len(joints), targets, progress).T)
 
 
 def find_sources(

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import lazy_loader
 
 if TYPE_CHECKING:
-    from .gltf.write.files import binary_ending as binary_ending
-    from .gltf.write.files import is_avatar as is_avatar
-    from .gltf.write.files import keeps_document as keeps_document
+    from .formats.gltf import binary_ending as binary_ending
+    from .formats.gltf import is_avatar as is_avatar
+    from .formats.gltf import keeps_document as keeps_document
     from .loading import check_output as check_output
     from .loading import load as load
     from .loading import save as save
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__, _ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "gltf.write.files": ["binary_ending", "is_avatar", "keeps_document"],
+        "formats.gltf": ["binary_ending", "is_avatar", "keeps_document"],
         "loading": ["check_output", "load", "save", "saving_notes"],
     },
 )

@@ -42,7 +42,7 @@ def as_file(source: Input) -> Iterator[Path]:
         if not isinstance(data, bytes):
             raise FileError(f'{name}: is open as text; open it as bytes: open(path, "rb")')
     start = data.removeprefix(b"\xef\xbb\xbf")
-    matches = {end: re.match(one.SUFFIXES[end], start) for end, one in BY_SUFFIX.items()}
+    matches = {end: re.match(one.suffixes[end], start) for end, one in BY_SUFFIX.items()}
     lengths = {end: match.end() for end, match in matches.items() if match}
     ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) > STL else "")
     stem = Path(str(name).strip("<>")).stem or "bytes"

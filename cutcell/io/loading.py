@@ -10,10 +10,9 @@ from ..rig import Rig
 from ..rig.inputs import as_rig
 from ..runtime.writing import check_place, write_all
 from .files import naming, read_bytes
-from .formats import BY_SUFFIX, described, suffixes
-from .formats.gltf import SUFFIXES as GLTF
+from .formats import BY_SUFFIX, GLTF, described, suffixes
+from .formats.gltf import keeps_document
 from .gltf.container import MAGIC
-from .gltf.write.files import keeps_document
 from .inputs import Input, as_file
 from .materials.gltf_colored import color_notes
 from .skeletons import with_skeleton
@@ -77,7 +76,7 @@ def _load(path: Path, bare: bool, accessories: bool) -> Rig:
         raise FileError(f'"{kind}" cannot be read; give {described("read")} ({hint})')
     if kind not in suffixes("read"):
         raise FileError("is not a mesh; give the mesh that this skeleton stands beside")
-    return BY_SUFFIX[kind].read(path, accessories, bare)
+    return BY_SUFFIX[kind].module.read(path, accessories, bare)
 
 
 def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
@@ -119,7 +118,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     with naming(path):
         rig.require_joints()
         check_output(path)
-        files = BY_SUFFIX[path.suffix.lower()].write(path, rig)
+        files = BY_SUFFIX[path.suffix.lower()].module.write(path, rig)
         write_all(files)
         return tuple(files)
 
@@ -127,14 +126,14 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
 def check_output(path: Path, rig: Rig | None = None) -> None:
     """Fail early if `save` would fail."""
     with naming(path):
-        form = BY_SUFFIX.get(path.suffix.lower())
-        if not hasattr(form, "write"):
+        kind = path.suffix.lower()
+        if kind not in suffixes("write"):
             raise FileError(
                 f'a rig cannot be saved as "{path.suffix}"; end the name in {described("write")}'
             )
         check_place(path)
-        if rig is not None and hasattr(form, "check"):
-            form.check(path, rig)
+        if rig is not None and kind in suffixes("check"):
+            BY_SUFFIX[kind].module.check(path, rig)
 
 
 def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:

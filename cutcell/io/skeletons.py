@@ -14,15 +14,13 @@ from ..errors import FileError, SkeletonError
 from ..rig import Clip, Rig, Skeleton
 from .files import naming
 from .formats import BY_SUFFIX, described, suffixes
-from .gltf.container import Document, malformed
+from .gltf.container import Document
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.added_skins import has_volume
 from .gltf.read.bones import find_bones
 from .gltf.read.clips import read_clips
-from .gltf.read.compressed import plain_document
 from .gltf.read.skins import Bind, read_bind, read_skeleton
-from .scenes.document import scene_arrays, scene_document
 from .weights import with_deform
 
 MARGIN = 0.1
@@ -53,7 +51,7 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
         if kind not in suffixes("read_skeleton"):
             choices = described("read_skeleton")
             raise FileError(f'no skeleton can be read from "{kind}"; give {choices}')
-        skeleton, world, stored, clips = BY_SUFFIX[kind].read_skeleton(path)
+        skeleton, world, stored, clips = BY_SUFFIX[kind].module.read_skeleton(path)
         if not len(skeleton.joints):
             raise SkeletonError(
                 "has no joints: neither a skin, nor nodes that are bones. Give a file with an "
@@ -99,20 +97,7 @@ def _extent(points: NDArray[np.float64]) -> str:
     return " to ".join(f"({corner})" for corner in corners)
 
 
-def of_gltf(path: Path) -> SkeletonFile:
-    """Return the joints of a document's skins, else its bones."""
-    with malformed():
-        return _of_document(plain_document(path))
-
-
-def of_scene(path: Path, kind: str) -> SkeletonFile:
-    """Return the bones of a file whose kind is "FBX" or "USD"."""
-    scene = scene_arrays(path, kind)
-    document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
-    return _of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
-
-
-def _of_document(
+def of_document(
     document: Document, bones: list[int] | None = None, world: NDArray | None = None
 ) -> SkeletonFile:
     """Return the joints of a document's skins, else its bones, which a scene lists."""

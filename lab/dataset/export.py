@@ -17,8 +17,8 @@ from cutcell.checks import check_choice
 from cutcell.errors import FileError, MissingLibraryError
 from cutcell.geometry.segments import distance_to_segment
 from cutcell.geometry.triangles import face_edges
-from cutcell.io.meshes.obj import write_obj
-from cutcell.io.rignet import word_names
+from cutcell.io.formats.rignet import word_names
+from cutcell.io.obj import write_obj
 from cutcell.rig import TriangleMesh
 from cutcell.runtime.writing import replacing, write_all
 

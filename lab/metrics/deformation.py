@@ -225,31 +225,6 @@ def longest_side(mesh: TriangleMesh) -> float:
     return float((high - low).max())
 
 
-def scene_error(
-    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
-) -> DeformationError:
-    """Compute the deformation error with turns about the axes of the scene, where y is up.
-
-    Parameters
-    ----------
-    rig : Rig
-    weights, reference : array_like, shape (n, j)
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    DeformationError
-    """
-
-    def placed(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        return points @ rig.world[:3, :3].T + rig.world[:3, 3]
-
-    mesh, bones = TriangleMesh(placed(rig.mesh.vertices), rig.mesh.faces), rig.skeleton
-    skeleton = Skeleton(placed(bones.joints), bones.parents, bones.names, bones.deform)
-    return deformation_error((mesh, skeleton), weights, reference, progress=progress)
-
-
 def _checked_joints(joints: Turned | ArrayLike, skeleton: Skeleton) -> NDArray[np.intp]:
     if isinstance(joints, str):
         every = check_choice("joints", joints, TURNED) == "all"

@@ -24,9 +24,8 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.io import keeps_document
+from cutcell.io import keeps_document, scenes
 from cutcell.io.gltf.read import compressed as gltf_draco
-from cutcell.io.scenes import document as scenes
 from cutcell.isolated.__main__ import limit_memory
 from cutcell.isolated.run import WorkFailedError
 

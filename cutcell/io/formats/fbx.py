@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from ...rig import Rig
-    from ..skeletons import SkeletonFile
+from ...rig import Rig
+from ..scenes import read_scene, read_scene_skeleton
+from ..skeletons import SkeletonFile
 
 SUFFIXES = {".fbx": rb"Kaydara FBX|;\s*FBX"}
 NOTE = ""
@@ -15,13 +14,9 @@ NOTE = ""
 
 def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a rig."""
-    from ..scenes.document import read_scene
-
     return read_scene(path, "FBX", accessories)
 
 
 def read_skeleton(path: Path) -> SkeletonFile:
     """Read the skeleton and the clips of a scene."""
-    from ..skeletons import of_scene
-
-    return of_scene(path, "FBX")
+    return read_scene_skeleton(path, "FBX")

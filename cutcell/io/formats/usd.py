@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from ...rig import Rig
-    from ..skeletons import SkeletonFile
+from ...rig import Rig
+from ..scenes import read_scene, read_scene_skeleton
+from ..skeletons import SkeletonFile
 
-SUFFIXES = {
-    ".usd": rb"PXR-USDC|#usda",
-    ".usda": rb"#usda",
-    ".usdc": rb"PXR-USDC",
-    ".usdz": rb"PK",
-}
+SUFFIXES = {".usd": rb"PXR-USDC|#usda", ".usda": rb"#usda", ".usdc": rb"PXR-USDC", ".usdz": rb"PK"}
 NOTE = "with cutcell[usd]"
 
 
 def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a rig."""
-    from ..scenes.document import read_scene
-
     return read_scene(path, "USD", accessories)
 
 
 def read_skeleton(path: Path) -> SkeletonFile:
     """Read the skeleton and the clips of a scene."""
-    from ..skeletons import of_scene
-
-    return of_scene(path, "USD")
+    return read_scene_skeleton(path, "USD")

@@ -57,16 +57,13 @@ class BufferWriter:
         self._arrays: dict[Any, tuple[int, bytearray]] = {}
         self._added: list[tuple[int, bytearray]] = []
 
-    def stored_type(self, accessor: int | None) -> Any:
-        """Return the component type of an accessor, if there is one."""
-        return None if accessor is None else COMPONENTS[self.accessors[accessor]["componentType"]]
-
     def store(
         self,
         values: NDArray,
         preferred: int | None = None,
         target: int | None = ARRAY_BUFFER,
         bounds: bool = False,
+        normalized: bool = False,
     ) -> int:
         """Store an array (n, k) and return its accessor: `preferred` if it was dropped."""
         index = preferred
@@ -77,6 +74,8 @@ class BufferWriter:
         for key in ("normalized", "min", "max"):
             accessor.pop(key, None)
         self.append(accessor, values, target)
+        if normalized:
+            accessor["normalized"] = True
         if bounds:
             accessor.update(min=values.min(axis=0).tolist(), max=values.max(axis=0).tolist())
         return index

@@ -60,10 +60,8 @@ class Document:
         self.allowance = Allowance(self.size + sum(sizes.values()))
 
     def forget(self) -> None:
-        """Clear read caches: what was checked or decoded, by the number of its accessor or mesh."""
+        """Clear what was checked and decoded, by the number of its accessor or mesh."""
         self.accessors: dict[int, Any] = {}
-        self.decoded: dict[int, Any] = {}
-        self.finite: set[int] = set()  # accessors that hold finite numbers only
         self.triangles: dict[int, Any] = {}  # vertices, faces and primitives of meshes
 
     def items(self, kind: str) -> list[dict[str, Any]]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from ...rig.rig import normalised
 from ..weights import KEY
-from .buffer import BufferWriter
 from .container import Document
 
 
@@ -44,23 +43,26 @@ def sorted_influences(
     return in_slots[0], in_slots[1]
 
 
+def influence_attributes(
+    influences: tuple[NDArray, NDArray], joints: int, is_wide: bool = False
+) -> dict[str, NDArray]:
+    """Return slots of four as attributes; joints have 16 bits if they must, or if `is_wide`."""
+    number = "<u2" if is_wide or joints > 256 else "<u1"
+    attributes = {}
+    for n, (numbers, shares) in enumerate(zip(*influences, strict=True)):
+        attributes[f"JOINTS_{n}"] = numbers.astype(number)
+        attributes[f"WEIGHTS_{n}"] = shares.astype("<f4")
+    return attributes
+
+
+def is_influence(name: str) -> bool:
+    """Return whether an attribute is of weights."""
+    return name.startswith(("JOINTS_", "WEIGHTS_"))
+
+
 def take_influences(attributes: dict[str, int]) -> dict[str, int]:
     """Remove JOINTS_n and WEIGHTS_n from attributes and return what they were."""
-    names = [name for name in attributes if name.startswith(("JOINTS_", "WEIGHTS_"))]
-    return {name: attributes.pop(name) for name in names}
-
-
-def store_influences(
-    buffer: BufferWriter, influences: tuple[NDArray, NDArray], joints: int, old: Mapping[str, int]
-) -> dict[str, int]:
-    """Store slots of four and return their accessors by attribute; `old` are those to replace."""
-    stored = {}
-    for n, (numbers, shares) in enumerate(zip(*influences, strict=True)):
-        small = joints <= 256 and buffer.stored_type(old.get(f"JOINTS_{n}")) != np.uint16
-        numbers = numbers.astype("<u1" if small else "<u2")
-        for name, values in ((f"JOINTS_{n}", numbers), (f"WEIGHTS_{n}", shares.astype("<f4"))):
-            stored[name] = buffer.store(values, old.get(name))
-    return stored
+    return {name: attributes.pop(name) for name in list(attributes) if is_influence(name)}
 
 
 def store_deform(

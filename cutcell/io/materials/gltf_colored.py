@@ -13,12 +13,11 @@ from ...rig import Rig
 from ..gltf.buffer import BufferWriter
 from ..gltf.constants import ELEMENT_ARRAY_BUFFER
 from ..gltf.container import Document
+from ..gltf.influences import is_influence
 from ..gltf.read.accessors import find_accessor
-from .corners import Corners, join_corners
 from .face_colors import Collected, FaceColors, Materials, face_colors
-from .gltf_images import image_notes
-from .gltf_palette import Group, Palette
-from .surfaces import SurfacePaint, Surfaces
+from .gltf_palette import Group, Palette, image_notes
+from .surfaces import Corners, SurfacePaint, Surfaces, join_corners
 from .transfer import has_materials, read_corners, read_materials
 
 _Look: TypeAlias = tuple[FaceColors | None, Corners]
@@ -90,7 +89,7 @@ def _with_looks(
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
         _store(buffer, mesh["primitives"], new, plain)
     for mesh, new in zip(document["meshes"], new_meshes, strict=True):
-        weights = filter(_is_weight, new.arrays)
+        weights = filter(is_influence, new.arrays)
         stored = {name: buffer.store(new.arrays[name], new.old[name]) for name in weights}
         for primitive in mesh["primitives"]:
             primitive["attributes"].update(stored)
@@ -133,8 +132,8 @@ def _take(view: Document, number: int, look: _Look, palette: Palette) -> _Mesh:
         arrays = colored | arrays
         old["indices"] = primitive.pop("indices")
     is_split = len(origin) > count
-    for name in sorted(named, key=_is_weight):
-        if is_split or _is_weight(name) or name in arrays:
+    for name in sorted(named, key=is_influence):
+        if is_split or is_influence(name) or name in arrays:
             old[name] = named.pop(name)
             if name not in arrays:
                 arrays[name] = _raw(view, old[name])[origin]
@@ -177,10 +176,10 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
         return
     named = primitive["attributes"]
     for name, values in mesh.arrays.items():
-        if not _is_weight(name):
-            named[name] = buffer.store(values, mesh.old.get(name), bounds=name == "POSITION")
-    if "COLOR_0" in mesh.arrays:
-        buffer.accessors[named["COLOR_0"]]["normalized"] = True
+        if not is_influence(name):
+            named[name] = buffer.store(
+                values, mesh.old.get(name), bounds=name == "POSITION", normalized=name == "COLOR_0"
+            )
     count = buffer.accessors[named["POSITION"]]["count"]
     kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
     primitives.clear()
@@ -197,10 +196,6 @@ def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, 
         })  # fmt: skip
 
 
-def _is_weight(name: str) -> bool:
-    return name.startswith(("JOINTS_", "WEIGHTS_"))
-
-
 def _faces(view: Document, number: int) -> NDArray[np.int32]:
     (primitive,) = view.json["meshes"][number]["primitives"]
     return _raw(view, primitive["indices"]).reshape(-1, 3).astype(np.int32)
@@ -209,4 +204,4 @@ def _faces(view: Document, number: int) -> NDArray[np.int32]:
 def _raw(view: Document, number: int) -> NDArray:
     """Return an accessor's elements as they are stored."""
     kind = view.json["accessors"][number]["type"]
-    return find_accessor(view, number, kind, "the document").base.array()
+    return find_accessor(view, number, kind, "the document").stored

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from ...errors import CutcellError, FileError
 from ...runtime.colors import srgb
 from ..gltf.container import Document, extensions, read_uri
-from ..gltf.read.accessors import read_accessor
-from ..gltf.read.primitives import attributes
+from ..gltf.read.primitives import Primitive
 from .face_colors import (
     BLENDED,
     CLAMP,
@@ -46,10 +45,10 @@ class _Base(NamedTuple):
         return bool(self.material) and self.material.get("alphaMode") == "BLEND"
 
 
-def _base(document: Document, primitive: dict[str, Any]) -> _Base:
-    if "material" not in primitive:
+def _base(primitive: Primitive) -> _Base:
+    if "material" not in primitive.json:
         return _Base()
-    material = document.item("materials", primitive["material"], "a primitive")
+    material = primitive.document.item("materials", primitive.json["material"], "a primitive")
     older = extension(material, "KHR_materials_pbrSpecularGlossiness")
     parameters = older or material.get("pbrMetallicRoughness") or {}
     prefix = "diffuse" if older else "baseColor"
@@ -59,15 +58,15 @@ def _base(document: Document, primitive: dict[str, Any]) -> _Base:
     return _Base(tuple(factor.tolist()), parameters.get(f"{prefix}Texture"), material)
 
 
-def is_coloured(document: Document, drawn: Iterable[dict[str, Any]]) -> bool:
+def is_coloured(drawn: Iterable[Primitive]) -> bool:
     """Return whether primitives are coloured: by an image, by vertex, or not in one grey alone."""
     factors = set()
     for primitive in drawn:
         try:
-            base = _base(document, primitive)
+            base = _base(primitive)
         except (CutcellError, *MALFORMED):
             continue
-        if base.texture or "COLOR_0" in attributes(primitive, "the document"):
+        if base.texture or "COLOR_0" in primitive.attributes:
             return True
         factors.add(base.factor[:3])
     return len(factors) > 1 or any(len(set(factor)) > 1 for factor in factors)
@@ -76,13 +75,13 @@ def is_coloured(document: Document, drawn: Iterable[dict[str, Any]]) -> bool:
 class PrimitivePaint:
     """Colours primitives, one after the other; see `face_colors.Paint`."""
 
-    def __init__(self, document: Document, collected: Collected) -> None:
-        self.document, self.collected = document, collected
+    def __init__(self, collected: Collected) -> None:
+        self.collected = collected
 
-    def __call__(self, primitive: dict[str, Any], at: NDArray, colors: FaceColors) -> None:
+    def __call__(self, primitive: Primitive, at: NDArray, colors: FaceColors) -> None:
         """Fill the rows of one primitive; `at` are its vertices by its own numbers."""
         try:
-            base = _base(self.document, primitive)
+            base = _base(primitive)
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
             return
@@ -90,23 +89,23 @@ class PrimitivePaint:
         if base.material is not None:
             name = base.material.get("name")
             named = name if isinstance(name, str) else ""
-            colors.materials[:] = self.collected.material(primitive["material"], named)
+            colors.materials[:] = self.collected.material(primitive.json["material"], named)
         self._fill(colors, base, factor)
         try:
-            if "COLOR_0" in attributes(primitive, "a primitive"):
-                self._fill(colors, base, factor * self._vertex_colors(primitive)[at])
+            if "COLOR_0" in primitive.attributes:
+                self._fill(colors, base, factor * _vertex_colors(primitive)[at])
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
         try:
             if base.texture:
-                texture = self.document.item("textures", base.texture["index"], "a material")
-                uv = places(self.document, primitive, base.texture)[at]
+                texture = primitive.document.item("textures", base.texture["index"], "a material")
+                uv = places(primitive, base.texture)[at]
                 sampler: dict[str, Any] = {}
                 if "sampler" in texture:
-                    sampler = self.document.item("samplers", texture["sampler"], "a texture")
+                    sampler = primitive.document.item("samplers", texture["sampler"], "a texture")
                 across, down = (WRAPS.get(sampler.get(key, 0), REPEAT) for key in WRAP_KEYS)
                 corners[..., 3] += 3 * across + down
-                corners[..., 2] = self._layer(texture, sampler, base)
+                corners[..., 2] = self._layer(primitive.document, texture, sampler, base)
                 corners[..., :2] = uv
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
@@ -118,22 +117,17 @@ class PrimitivePaint:
             colors.opacity[:] = np.round(OPAQUE * alpha)
             colors.corners[..., 3] = BLENDED
 
-    def _note(self, primitive: dict[str, Any], error: Exception) -> None:
-        material = primitive.get("material")
+    def _note(self, primitive: Primitive, error: Exception) -> None:
+        material: Any = primitive.json.get("material")
         try:
-            label = self.document.label("materials", material)  # type: ignore[arg-type]
+            label = primitive.document.label("materials", material)
         except CutcellError:
             label = "a material"
         self.collected.note(label, error)
 
-    def _vertex_colors(self, primitive: dict[str, Any]) -> NDArray:
-        index = primitive["attributes"]["COLOR_0"]
-        kind = self.document.item("accessors", index, "COLOR_0").get("type")
-        kind = kind if kind in ("VEC3", "VEC4") else "VEC4"
-        values = read_accessor(self.document, index, kind, "COLOR_0")
-        return values if kind == "VEC4" else np.pad(values, ((0, 0), (0, 1)), constant_values=1)
-
-    def _layer(self, texture: dict[str, Any], sampler: dict[str, Any], base: _Base) -> int:
+    def _layer(
+        self, document: Document, texture: dict[str, Any], sampler: dict[str, Any], base: _Base
+    ) -> int:
         """Return the number of the use of a texture's image by a material."""
         source = extension(texture, "EXT_texture_webp").get("source", texture.get("source"))
         if source is None:
@@ -142,7 +136,14 @@ class PrimitivePaint:
         if base.material.get("alphaMode") == "MASK":  # the image's alpha is times the factor's
             cutoff = float(base.material.get("alphaCutoff", CUTOFF)) / max(base.factor[3], 1e-3)
         use = Layer(source, sampler.get("magFilter") == NEAREST, cutoff, base.blended)
-        return self.collected.layer(use, lambda: stored_image(self.document, source))
+        return self.collected.layer(use, lambda: stored_image(document, source))
+
+
+def _vertex_colors(primitive: Primitive) -> NDArray:
+    stored = primitive.document.item("accessors", primitive.attributes["COLOR_0"], "COLOR_0")
+    kind = "VEC3" if stored.get("type") == "VEC3" else "VEC4"
+    values = primitive.accessor("COLOR_0", kind).values
+    return values if kind == "VEC4" else np.pad(values, ((0, 0), (0, 1)), constant_values=1)
 
 
 def extension(owner: dict[str, Any], name: str) -> dict[str, Any]:
@@ -151,14 +152,13 @@ def extension(owner: dict[str, Any], name: str) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
 
 
-def places(document: Document, primitive: dict[str, Any], info: dict[str, Any]) -> NDArray:
+def places(primitive: Primitive, info: dict[str, Any]) -> NDArray:
     """Return the position of each vertex of a primitive in a material's image, shape (n, 2)."""
     moved = extension(info, "KHR_texture_transform")
     name = f"TEXCOORD_{moved.get('texCoord', info.get('texCoord', 0))}"
-    named = attributes(primitive, "a primitive")
-    if name not in named:
+    if name not in primitive.attributes:
         raise FileError(f"its mesh has no {name}")
-    uv = read_accessor(document, named[name], "VEC2", name).astype(np.float64)
+    uv = primitive.accessor(name, "VEC2").values.astype(np.float64)
     uv = np.where(np.isfinite(uv).all(axis=1, keepdims=True), uv, 0)
     if not moved:
         return uv

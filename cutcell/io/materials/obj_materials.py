@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import FileError
 from ..files import read_beside
-from ..meshes.obj import ObjMesh, numbered_words
+from ..obj import ObjMesh, numbered_words
 from .surfaces import ImageFile, Material, Surface, Surfaces
 
 LARGEST = 2**24

@@ -13,20 +13,12 @@ from numpy.typing import NDArray
 from ...errors import CutcellError
 from ...rig import Rig
 from ..gltf.container import Document
-from ..gltf.read.accessors import read_accessor
-from ..gltf.read.primitives import (
-    StoredFaces,
-    primitives,
-    read_faces,
-    read_positions,
-    read_triangles,
-)
+from ..gltf.read.primitives import Primitive, StoredFaces, primitives, read_triangles
 from ..gltf.read.read import BareSource, GltfSource
-from .corners import Corners, Piece, join_corners
 from .face_colors import Collected, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
 from .obj_materials import ObjSource
-from .surfaces import Surface, SurfacePaint, Surfaces
+from .surfaces import Corners, Piece, Surface, SurfacePaint, Surfaces, join_corners
 
 BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
@@ -41,8 +33,8 @@ def has_materials(rig: Rig) -> bool:
     drawn = [primitive for primitive, _, _ in _of_body(document, rig.source)]
     for node in getattr(rig.source, "attached", ()):
         mesh = document.items("nodes")[node]["mesh"]
-        drawn += primitives(document, mesh, document.label("nodes", node))
-    return is_coloured(document, drawn)
+        drawn += primitives(document, mesh)
+    return is_coloured(drawn)
 
 
 def read_materials(rig: Rig) -> Materials | None:
@@ -66,7 +58,7 @@ def read_materials(rig: Rig) -> Materials | None:
     else:
         return None
     collected = Collected(() if surfaces is None else surfaces.notes)
-    paint: Any = PrimitivePaint(document, collected) if document is not None else None
+    paint: Any = PrimitivePaint(collected) if document is not None else None
     if surfaces is not None:
         paint = SurfacePaint(surfaces, collected)
     colors = [face_colors(faces, pieces, paint) for faces, pieces in meshes]
@@ -100,14 +92,12 @@ def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
     """Return what the file of a document stores of the faces of a primitive."""
     if document.surfaces is not None:
         return document.surfaces.meshes.get(one.mesh)
-    primitive = primitives(document, one.mesh, "the document")[one.primitive]
-    named, corners = primitive["attributes"], {}
-    count = len(read_positions(document, primitive, "the document"))
-    faces = read_faces(document, primitive, count, "the document")
+    primitive, corners = primitives(document, one.mesh)[one.primitive], {}
+    faces = primitive.faces()
     for key, name, kind in (("normals", "NORMAL", "VEC3"), ("places", "TEXCOORD_0", "VEC2")):
-        if name in named:
+        if name in primitive.attributes:
             with suppress(CutcellError):
-                values = read_accessor(document, named[name], kind, "the document")
+                values = primitive.accessor(name, kind).values
                 corners[key] = np.asarray(values, np.float32)[faces]
     return Surface(faces.astype(np.int32), np.full(len(faces), -1, np.int32), **corners)
 
@@ -126,7 +116,7 @@ def _of_body(
     document: Document, source: GltfSource | BareSource
 ) -> Iterator[tuple[Any, int, slice]]:
     for one in source.faces:
-        primitive = primitives(document, one.mesh, "the document")[one.primitive]
+        primitive = primitives(document, one.mesh)[one.primitive]
         yield _what(document, one.mesh, primitive), one.first_vertex, one.rows
 
 
@@ -137,6 +127,6 @@ def _of_node(document: Document, number: int) -> Iterator[tuple[Any, int, slice]
         yield _what(document, mesh, primitive), first, rows
 
 
-def _what(document: Document, mesh: int, primitive: dict[str, Any]) -> Any:
+def _what(document: Document, mesh: int, primitive: Primitive) -> Any:
     """Return what colours a primitive: it, or a surface of the format that it was made of."""
     return primitive if document.surfaces is None else document.surfaces.meshes.get(mesh)

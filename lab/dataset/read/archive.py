@@ -1,7 +1,7 @@
 """Articulation-XL 2.0 as published: an npz whose `arr_0` is a pickled list of dictionaries.
 
-Each dictionary is one asset, its arrays named as in `cutcell.io.articulation`, some of them in two
-ways (`skinning_weights_row` and `_rows`, `_col` and `_cols`).
+Each dictionary is one asset, its arrays named as in `cutcell.io.formats.articulation`, some of them
+in two ways (`skinning_weights_row` and `_rows`, `_col` and `_cols`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from cutcell.checks import one_line
 from cutcell.errors import FileError
-from cutcell.io.articulation import HEADERS
+from cutcell.io.formats.articulation import HEADERS
 from cutcell.runtime.writing import reason, write_all
 
 from .unpickle import Refused, plain_objects

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from cutcell.checks import one_line
 from cutcell.errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
 from cutcell.geometry.triangles import face_edges
-from cutcell.io.articulation import HEADERS, articulation_bytes
+from cutcell.io.formats.articulation import HEADERS, write
 from cutcell.io.weights import normalised, with_deform
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
@@ -105,7 +105,7 @@ def read_samples(path: Path, names: list[str]) -> Iterator[tuple[str, bytes]]:
     """
     with _opened(path) as file:
         for name in names:
-            yield name, articulation_bytes(_sample(file[name], f"{path.name}/{name}"))
+            yield name, write(path, _sample(file[name], f"{path.name}/{name}"))[path]
 
 
 def _opened(path: Path) -> Any:

@@ -15,8 +15,8 @@ from cutcell.errors import CutcellError, FileError
 from cutcell.io import load
 from cutcell.io.files import naming, read_bytes, regular_file
 from cutcell.io.formats import suffixes
+from cutcell.io.formats.rignet import rig_file
 from cutcell.io.gltf.container import beside
-from cutcell.io.rignet import rig_file
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .archive import MEMBER

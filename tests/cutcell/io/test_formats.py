@@ -20,13 +20,13 @@ def listed(path: Path) -> dict[frozenset[str], list[bool]]:
 
 def test_the_document_lists_each_format():
     expected = {
-        frozenset(one.SUFFIXES): [hasattr(one, name) for name in FUNCTIONS] for one in FORMATS
+        frozenset(one.suffixes): [name in one.functions for name in FUNCTIONS] for one in FORMATS
     }
     assert listed(ROOT / "docs" / "formats.md") == expected
 
 
 def test_each_suffix_is_of_one_format():
-    assert len(BY_SUFFIX) == sum(len(one.SUFFIXES) for one in FORMATS)
+    assert len(BY_SUFFIX) == sum(len(one.suffixes) for one in FORMATS)
     assert all(suffix == suffix.lower() and suffix.startswith(".") for suffix in BY_SUFFIX)
 
 

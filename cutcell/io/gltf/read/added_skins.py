@@ -22,7 +22,7 @@ from ..influences import take_influences
 from ..nodes import Nodes, target_of
 from .bones import Bones, find_bones, human_bones
 from .parts import draws_mesh, hidden_nodes, mesh_name, vanishes
-from .primitives import attributes, primitives, read_triangles
+from .primitives import primitives, read_triangles
 from .skins import Bind
 
 
@@ -74,7 +74,7 @@ def add_skins(document: Document, nodes: Nodes, bind: Bind, to_rig: dict[int, ND
             node["mesh"] = _append(document, "meshes", copied)
         used.add(node["mesh"])
         for primitive in primitives(document, node["mesh"], document.label("nodes", i)):
-            take_influences(attributes(primitive, document.label("nodes", i)))  # of another skin
+            take_influences(primitive.attributes)  # of another skin
         node["skin"] = skins[key]
 
 

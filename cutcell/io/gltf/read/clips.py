@@ -170,17 +170,15 @@ def _values(
     document: Document, sampler: dict[str, Any], how: Any, path: str, keys: int, label: str
 ) -> Accessor:
     """Return the values of a sampler, checked."""
-    index: Any = sampler.get("output")
-    values = find_accessor(document, index, "VEC4" if path == "rotation" else "VEC3", label)
+    kind = "VEC4" if path == "rotation" else "VEC3"
+    values = find_accessor(document, sampler.get("output"), kind, label)
     if how not in INTERPOLATIONS:
         raise FileError(f"{label}: the interpolation {how!r} is none of glTF's")
     needed = keys * (3 if how == CUBICSPLINE else 1)
     if len(values) != needed:
         raise FileError(f"{label}: {keys} keys need {needed} values, {len(values)} are there")
-    if index not in document.finite:
-        if not np.isfinite(values.decoded()).all():
-            raise FileError(f"{label} holds values that are not finite numbers")
-        document.finite.add(index)
+    if not values.is_finite:
+        raise FileError(f"{label} holds values that are not finite numbers")
     return values
 
 

@@ -21,7 +21,7 @@ from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, ROUNDED, TRIANGLES, WIDTHS
 from ..container import Document, extensions, read_document, whole
 from .accessors import component
-from .primitives import attributes, primitives
+from .primitives import primitives
 
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 MODES = ("ATTRIBUTES", "TRIANGLES", "INDICES")
@@ -128,15 +128,14 @@ def _compressed(document: Document) -> list[tuple[str, dict[str, Any], dict[str,
     compressed = []
     for m, mesh in enumerate(document.items("meshes")):
         drawn = primitives(document, m, f"meshes[{m}]") if "primitives" in mesh else ()
-        for k, primitive in enumerate(drawn):
-            if DRACO not in extensions(primitive):
+        for one in drawn:
+            if DRACO not in extensions(one.json):
                 continue
-            user = f"{document.label('meshes', m)}, primitive {k}"
-            extension = _take(primitive, DRACO, user)
+            extension = _take(one.json, DRACO, one.label)
             if not isinstance(extension.get("attributes"), dict):
-                raise FileError(f"{user}: its {DRACO} must name attributes and a bufferView")
-            extension["plain"] = [primitive.get("indices"), *attributes(primitive, user).values()]
-            compressed.append((user, primitive, extension))
+                raise FileError(f"{one.label}: its {DRACO} must name attributes and a bufferView")
+            extension["plain"] = [one.json.get("indices"), *one.attributes.values()]
+            compressed.append((one.label, one.json, extension))
     return compressed
 
 

@@ -70,7 +70,7 @@ def vanishes(nodes: Nodes, node: int) -> bool:
 def draws_mesh(document: Document, nodes: Nodes, node: int) -> bool:
     """Return whether a node's mesh has triangles, not only points or lines."""
     user = document.label("nodes", node)
-    return any(drawn_primitives(document, nodes.raw[node]["mesh"], user))
+    return bool(drawn_primitives(document, nodes.raw[node]["mesh"], user))
 
 
 def left_out_meshes(

@@ -22,15 +22,7 @@ from .added_skins import bind_accessories, bind_to_bones, moved, read_attachment
 from .clips import read_clips
 from .compressed import plain_document
 from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes
-from .primitives import (
-    StoredFaces,
-    attributes,
-    drawn_primitives,
-    read_faces,
-    read_positions,
-    read_triangles,
-    read_weights,
-)
+from .primitives import StoredFaces, drawn_primitives, read_triangles
 from .seams import closed_seams
 from .skins import Bind, check_unused, read_bind, read_skeleton
 
@@ -227,34 +219,32 @@ def _read_parts(
         if mesh in read_meshes and not is_bare:
             continue
         read_meshes.add(mesh)
-        for k, label, primitive in drawn_primitives(document, mesh, document.label("nodes", i)):
-            positions = read_positions(document, primitive, label)
-            corners = read_faces(document, primitive, len(positions), label)
-            named_accessors = attributes(primitive, label).items()
-            key = skin, *sorted(one for one in named_accessors if one[0].startswith(VERTEX_NAMES))
+        for primitive in drawn_primitives(document, mesh, document.label("nodes", i)):
+            positions, corners = primitive.positions, primitive.faces()
+            named_accessors, to_rig = primitive.attributes, bind.to_rig[skin]
+            shared = [one for one in named_accessors.items() if one[0].startswith(VERTEX_NAMES)]
+            key = skin, *sorted(shared)
             if key not in parts:
-                document.allowance.take(positions.nbytes, label)
-                read, joints = NO_WEIGHTS, len(bind.skins[skin])
-                if joints:
-                    read = read_weights(document, primitive, len(positions), joints, label)
+                document.allowance.take(positions.nbytes, primitive.label)
+                joints = bind.skins[skin]
                 rows = slice(total, total := total + len(positions))
-                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
-                vertices.append(moved(positions, bind.to_rig[skin]))
-                weights.append(read)
-                index, to_rig = primitive["attributes"]["POSITION"], bind.to_rig[skin]
+                parts[key] = StoredPart(primitive.label, [], skin, rows, joints)
+                vertices.append(moved(positions, to_rig))
+                weights.append(primitive.weights(len(joints)) if joints else NO_WEIGHTS)
+                index = named_accessors["POSITION"]
                 accessor, by_draco = document.items("accessors")[index], {ROUNDED: True}
                 own = index if accessor.get("extras") == by_draco else -1
                 grid = grids.setdefault((own, to_rig.tobytes()), [])
                 if own >= 0 or accessor["componentType"] != FLOAT:
                     grid.append(positions * np.linalg.norm(to_rig[:3, :3]))
-            parts[key].primitives.append((mesh, k))
-            is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
+            parts[key].primitives.append((mesh, primitive.number))
+            is_mirrored = bool(np.linalg.det(to_rig[:3, :3]) < 0)
             if is_mirrored:
                 corners = corners[:, ::-1]  # what was outside stays outside
             start = parts[key].rows.start
             rows = slice(triangles, triangles := triangles + len(corners))
             faces.append(corners + start)
-            drawn.append(StoredFaces(i, mesh, k, start, rows, is_mirrored))
+            drawn.append(StoredFaces(i, mesh, primitive.number, start, rows, is_mirrored))
         if total > first:
             rows = slice(first, total)
             hides = i in hidden or (is_bare and vanishes(nodes, i))

@@ -15,7 +15,7 @@ from ..binds import BoundSkin, agreed, invertible, mend, rest_world
 from ..container import Document, indices
 from ..nodes import Nodes
 from .accessors import read_accessor
-from .primitives import drawn_primitives, joint_shares, read_positions
+from .primitives import drawn_primitives
 
 
 def _votes(skin: BoundSkin, to_rig: NDArray) -> tuple[NDArray, NDArray]:
@@ -88,11 +88,10 @@ def _vertices(
     corners = np.array([np.full(3, np.inf), np.full(3, -np.inf)])
     for i in users:
         mesh, user = nodes.raw[i]["mesh"], document.label("nodes", i)
-        for _, label, primitive in drawn_primitives(document, mesh, user):
-            positions = read_positions(document, primitive, label)
-            corners[0] = np.minimum(corners[0], positions.min(axis=0))
-            corners[1] = np.maximum(corners[1], positions.max(axis=0))
-            shares += joint_shares(document, primitive, joints, label)
+        for primitive in drawn_primitives(document, mesh, user):
+            corners[0] = np.minimum(corners[0], primitive.positions.min(axis=0))
+            corners[1] = np.maximum(corners[1], primitive.positions.max(axis=0))
+            shares += primitive.joint_shares(joints)
     return shares, corners if np.isfinite(corners).all() else np.zeros((2, 3))
 
 

@@ -39,6 +39,14 @@ class NewValues:
     old: int | None  # the accessor that they replace
     target: int | None = None  # of the buffer view
 
+    def store(self, buffer: BufferWriter, stored: dict[Any, int]) -> None:
+        """Store them, or refer to equal ones that were `stored` before."""
+        same = self.key, self.old, self.target, self.values.tobytes()
+        if same not in stored:
+            is_share = self.key.startswith("WEIGHTS_") and self.values.dtype.kind != "f"
+            stored[same] = buffer.store(self.values, self.old, self.target, normalized=is_share)
+        self.owner[self.key] = stored[same]
+
 
 @np.errstate(over="ignore")  # readers refuse what becomes infinite
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
@@ -79,16 +87,6 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     return np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
 
 
-def store_values(buffer: BufferWriter, replaced: list[NewValues]) -> None:
-    """Store values that were taken out of a document, equal ones once."""
-    stored: dict[Any, int] = {}
-    for new in replaced:
-        same = new.old, new.target, new.values.tobytes()
-        if same not in stored:
-            stored[same] = buffer.store(new.values, new.old, new.target)
-        new.owner[new.key] = stored[same]
-
-
 def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
     """Return a skin's inverse bind matrices as they are stored, shape (k, 16); refuse none."""
     label, stored = loaded.label("skins", skin), loaded.json["skins"][skin]
@@ -106,9 +104,15 @@ def read_binds(loaded: Document, skin: int) -> NDArray[np.float64]:
 
 
 def _needed(rig: Rig, is_moved: NDArray[np.bool_]) -> dict[int, dict[int, NDArray]]:
-    """Return the mended matrices that must be saved: of joints that are moved or hold a vertex."""
+    """Return the mended matrices that must be saved: of joints that are moved or hold a vertex.
+
+    A document that was made of another format has no matrices of its own to keep.
+    """
     source, weights = rig.source, rig.weights
     assert weights is not None
+    if not source.document.is_gltf:
+        frames = np.linalg.inv(source.inverse)[:, :3, 3]
+        is_moved = is_moved | np.isclose(frames, source.skeleton.joints).all(axis=1)
     origin = file_joints(rig)
     needed: dict[int, dict[int, NDArray]] = {}
     for part in source.parts:

@@ -22,14 +22,15 @@ import numpy as np
 from ....errors import FileError, MeshError, SkeletonError, WeightsError
 from ....rig import Rig
 from ...materials.gltf_colored import with_surface_looks
-from ...materials.gltf_images import carry_images
+from ...materials.gltf_palette import carry_images
 from ..buffer import BufferWriter
+from ..constants import ARRAY_BUFFER
 from ..container import Document, beside, json_bytes, pack_glb
-from ..influences import pack_influences, store_deform, store_influences, take_influences
+from ..influences import store_deform, take_influences
 from ..read.read import GltfSource, StoredPart
 from .faces import take_faces
-from .influence_rows import store_changed_rows, stored_rows
-from .moves import file_joints, store_values, take_moves
+from .influence_rows import new_influences
+from .moves import NewValues, file_joints, take_moves
 from .structure import take_structure
 
 
@@ -42,33 +43,41 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     _forget_settings(document)
     faces = take_faces(document, rig)
     parts, moves = take_structure(document, rig, take_moves(document, rig))
-    dropped = [new.old for new in (*faces, *moves) if new.old is not None]
-    changed = []
-    for part, saved in zip(source.parts, parts, strict=True):
+    for saved in parts:
         _check_reachable(rig, saved)
-        rows = stored_rows(rig, part, saved) if source.document.is_gltf else None
-        if rows is None or not rows.is_same.all():
-            primitives = [document["meshes"][m]["primitives"][k] for m, k in saved.primitives]
-            old: dict[str, int] = {}
-            for primitive in primitives:
-                old |= take_influences(primitive["attributes"])
-            dropped += old.values()
-            changed.append((saved, primitives, old, rows))
+    weights, given_up = _take_weights(document, rig, parts)
     store_deform(document, ((part.skin, part.joints) for part in parts), rig.skeleton.deform)
-    buffer = BufferWriter(document, source.document.buffers, dropped)
-    store_values(buffer, moves)
-    for part, primitives, old, rows in changed:
-        weights = rig.weights[part.rows][:, part.joints]  # type: ignore[index]
-        if rows is not None and rows.joints and rows.is_same.any():
-            new = store_changed_rows(buffer, weights, rows, old)
-        else:
-            new = store_influences(buffer, pack_influences(weights), len(part.joints), old)
-        for primitive in primitives:
-            primitive["attributes"].update(new)
-    store_values(buffer, faces)
+    changes, stored = [*moves, *weights, *faces], dict[Any, int]()
+    given_up += [new.old for new in changes if new.old is not None]
+    buffer = BufferWriter(document, source.document.buffers, given_up)
+    for new in changes:
+        new.store(buffer, stored)
     buffer = with_surface_looks(buffer, source.document.surfaces)
     carried = carry_images(buffer, source.document, path)
     return {**carried, **packed(buffer, source.document, path, carried)}
+
+
+def _take_weights(
+    document: dict[str, Any], rig: Rig, parts: list[StoredPart]
+) -> tuple[list[NewValues], list[int]]:
+    """Take weights that change out of a document; return new ones, and the accessors they had."""
+    changes: list[NewValues] = []
+    given_up: list[int] = []
+    for part, saved in zip(rig.source.parts, parts, strict=True):
+        new = new_influences(rig, part, saved)
+        if new is None:
+            continue
+        old: dict[str, int] = {}
+        owners = [document["meshes"][m]["primitives"][k]["attributes"] for m, k in saved.primitives]
+        for owner in owners:
+            old |= take_influences(owner)
+        given_up += old.values()
+        changes += [
+            NewValues(owner, name, values, old.get(name), ARRAY_BUFFER)
+            for name, values in new.items()
+            for owner in owners
+        ]
+    return changes, given_up
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:

@@ -199,7 +199,7 @@ CASES = {
     "view without buffer": (in_view("POSITION", buffer=2), F, r"refers to buffers\[2\]"),
     "short stride": (in_view("POSITION", byteStride=4), F, "stride of 4 bytes is too short"),
     "sparse no object": (in_accessor("POSITION", sparse=3), F, "sparse: must be an object"),
-    "sparse no values": (sparse(values=None), F, 'needs "indices" and "values"'),
+    "sparse no values": (sparse(values=None), F, '"indices" and "values" need'),
     "sparse no view": (sparse(values={}), F, 'need a "bufferView"'),
     "sparse range": (sparse(indices={"bufferView": 0, "componentType": 5126}), F, "out of range"),
     "float joints": (attribute("JOINTS_0", SHARES), F, "JOINTS_0 are float"),

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.materials.corners import vertex_normals
+from cutcell.io.materials.surfaces import vertex_normals
 from cutcell.pose import swing
 from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES
 from tests.gltf_validator.validator import errors, reports

@@ -19,7 +19,7 @@ def rows_of(path):
     (primitive,) = document.json["meshes"][0]["primitives"]
     attributes = primitive["attributes"]
     arrays = {
-        name: find_accessor(document, attributes[name], "VEC4", name).stored()
+        name: find_accessor(document, attributes[name], "VEC4", name).stored
         for name in NAMES
         if name in attributes
     }

@@ -280,7 +280,7 @@ def test_what_did_not_come_from_gltf_has_none(loaded):
 def test_reading_leaves_the_document_as_it_was(loaded):
     rig = loaded(with_image(column()))
     read_materials(rig)
-    assert rig.source.document.decoded == {}
+    assert rig.source.document.accessors == {}
 
 
 ODD = [None, -1, 0, 3, 5125, 10**18, 0.5, 1e300, True, "", "x", [], [1], [None], {}, {"a": 1}]

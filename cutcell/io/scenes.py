@@ -1,4 +1,4 @@
-"""A scene of another format as a glTF document, so that one reader does for all.
+"""FBX and USD: a subprocess reads the scene, which becomes a glTF document.
 
 A scene comes as arrays by name. Of k nodes, the root being the first: `node_names`,
 `node_parents` (-1 for none), `node_transforms` (k, 10: translation, quaternion x y z w, scale),
@@ -16,24 +16,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import FileError, MeshError
-from ...isolated.run import WorkFailedError, run_isolated
-from ...rig import Rig
-from ...runtime.display import listed
-from ..files import read_bytes
-from ..gltf.builder import GltfBuilder
-from ..gltf.container import Document
-from ..gltf.influences import sorted_influences, store_influences
-from ..gltf.read.read import read_rig
-from ..gltf.read.skins import mended_warning
-from ..materials.surfaces import scene_surfaces
-from .joints import SceneSkin, scene_skins
+from ..errors import FileError, MeshError
+from ..isolated.run import WorkFailedError, run_isolated
+from ..rig import Rig
+from ..runtime.display import listed
+from .files import read_bytes
+from .gltf.builder import GltfBuilder
+from .gltf.container import Document
+from .gltf.influences import influence_attributes, sorted_influences
+from .gltf.nodes import compose
+from .gltf.read.read import read_rig
+from .materials.surfaces import scene_surfaces
+from .skeletons import SkeletonFile, of_document
 
+WEIGHTS = ("columns", "values")
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
 """Most influences of a vertex; sixteen sets of glTF hold them."""
@@ -61,10 +62,6 @@ def scene_document(
     made.add_clips(scene)
     document = Document(path, made.json, [made.buffer.finish()])
     document.surfaces = scene_surfaces(scene, path, made.meshes)
-    placed = dict.fromkeys(node for skin in skins.values() for node in skin.mended)
-    if placed:
-        names = [str(scene["node_names"][node]) for node in placed]
-        document.warnings.append(mended_warning(names))
     return document, world
 
 
@@ -107,8 +104,8 @@ class _SceneBuilder(GltfBuilder):
         attributes = {"POSITION": self.floats(vertices, bounds=True)}
         node: dict[str, Any] = {"name": name}
         if skin is not None:
-            attributes |= self._weights(scene, k, skin, name, len(vertices))
-            node["skin"] = self.add_skin(skin.joints, skin.inverse)
+            attributes |= self._weights(scene, k, len(skin[0]), name, len(vertices))
+            node["skin"] = self.add_skin(*skin)
         elif not np.array_equal(scene[f"mesh_{k}_place"], np.eye(4)):
             node["matrix"] = scene[f"mesh_{k}_place"].T.ravel().tolist()
         node["mesh"] = self.meshes[k] = self.add_mesh(name, attributes, faces)
@@ -121,7 +118,7 @@ class _SceneBuilder(GltfBuilder):
         self.add_node(node, int(scene["mesh_nodes"][k]))
 
     def _weights(
-        self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin, name: str, count: int
+        self, scene: Mapping[str, NDArray], k: int, joints: int, name: str, count: int
     ) -> dict[str, int]:
         rows, values = (scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in ("rows", "values"))
         if not len(rows):
@@ -131,7 +128,8 @@ class _SceneBuilder(GltfBuilder):
         columns = scene[f"mesh_{k}_columns"]
         influences = sorted_influences(rows, columns, values, count, MAX_INFLUENCES)
         with np.errstate(over="ignore"):  # readers refuse what becomes infinite
-            return store_influences(self.buffer, influences, len(skin.joints), {})
+            attributes = influence_attributes(influences, joints)
+        return {name: self.buffer.store(one) for name, one in attributes.items()}
 
     def add_clips(self, scene: Mapping[str, NDArray]) -> None:
         clips: list[dict[str, Any]] = [
@@ -179,6 +177,13 @@ def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
     return read_rig(document, world, accessories, why_bare)
 
 
+def read_scene_skeleton(path: Path, kind: str) -> SkeletonFile:
+    """Return the bones of a file whose kind is "FBX" or "USD"."""
+    scene = scene_arrays(path, kind)
+    document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
+    return of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
+
+
 def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
     """Return the arrays of an FBX or USD file; see `document`."""
     data = read_bytes(path)
@@ -197,3 +202,83 @@ def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
         return run_isolated(task, job, seconds, who, memory, extra)
     except WorkFailedError as e:
         raise FileError(f"cannot be read as {kind}: {e}") from None
+
+
+SceneSkin: TypeAlias = tuple[list[int], NDArray[np.float64]]
+"""The joints of a mesh, as nodes, and their inverse bind matrices, shape (j, 4, 4)."""
+
+
+def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDArray | None]:
+    """Return the skin of each mesh that has one, and the matrix of the first such mesh.
+
+    A skin names the joints that hold a vertex. The other bones of the same tree (fingertips,
+    roots, helpers) join the first mesh that is bound to it, where they are at rest relative to
+    the nearest bone above that it knows. In a scene without any weights each mesh that is
+    below no bone, or each if all are below one, is bound to all bones in their current position.
+    """
+    parents = scene["node_parents"].tolist()
+    world = _worlds(scene["node_transforms"], parents)
+    bones = np.flatnonzero(scene["node_bones"]).tolist()
+    meshes = range(len(scene["mesh_names"]))
+    skins: dict[int, SceneSkin] = {
+        k: (scene[f"mesh_{k}_joints"].tolist(), scene[f"mesh_{k}_inverse"])
+        for k in meshes
+        if len(scene.get(f"mesh_{k}_joints", ()))
+    }
+    skins = skins or _unbound(scene, parents, world, bones)
+    if not skins:
+        return {}, None
+    first = min(skins)  # its joints may be posed
+    stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
+    assigned: set[int] = {joint for joints, _ in skins.values() for joint in joints}
+    for k, (joints, inverse) in skins.items():
+        trees = {_above(joint, parents)[-1] for joint in joints}
+        more = [b for b in bones if b not in assigned and _above(b, parents)[-1] in trees]
+        columns, values = (
+            scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in ("columns", "values")
+        )
+        # Relative to joints that hold a vertex: the matrices of others may contradict their nodes.
+        held = [j for j in np.unique(columns[values > 0]).tolist() if 0 <= j < len(joints)]
+        number = {joints[j]: j for j in held or range(len(joints))}
+        for bone in filter(lambda bone: _inverse(world[bone])[1], more):
+            above = next((a for a in _above(bone, parents) if a in number), next(iter(number)))
+            matrix = np.linalg.inv(world[bone]) @ world[above] @ inverse[number[above]]
+            joints, inverse = [*joints, bone], np.concatenate([inverse, matrix[None]])
+        skins[k] = joints, inverse
+        assigned.update(more)
+    return skins, stands if _inverse(stands)[1] else None
+
+
+def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
+    world = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
+    for i, parent in enumerate(parents):  # parents come before their children
+        if parent >= 0:
+            world[i] = world[parent] @ world[i]
+    return world
+
+
+def _above(node: int, parents: list[int]) -> list[int]:
+    """Return a node and those above it, without the scene's root."""
+    chain = [node]
+    while parents[node] > 0:
+        chain.append(node := parents[node])
+    return chain
+
+
+def _unbound(
+    scene: Mapping[str, NDArray], parents: list[int], world: NDArray, bones: list[int]
+) -> dict[int, SceneSkin]:
+    inverses = [(bone, *_inverse(world[bone])) for bone in bones]
+    able = [(bone, inverse) for bone, inverse, solvable in inverses if solvable]
+    places = scene["mesh_nodes"].tolist()
+    free = [k for k, node in enumerate(places) if not set(_above(node, parents)) & set(bones)]
+    skins = {}
+    for k in (free or range(len(places))) if able else ():
+        place = world[places[k]] @ scene[f"mesh_{k}_place"]
+        skins[k] = [bone for bone, _ in able], np.array([matrix @ place for _, matrix in able])
+    return skins
+
+
+def _inverse(matrix: NDArray) -> tuple[NDArray, bool]:
+    solvable = np.isfinite(matrix).all() and abs(np.linalg.det(matrix)) > 1e-300
+    return (np.linalg.inv(matrix) if solvable else matrix), bool(solvable)

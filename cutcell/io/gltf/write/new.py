@@ -1,7 +1,9 @@
-"""A new glTF file for a rig that did not come from one."""
+"""New glTF documents, and a skeleton for a document whose meshes have none."""
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +14,19 @@ from .... import __version__
 from ....errors import MeshError, SkeletonError
 from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
-from ...materials.corners import vertex_normals
 from ...materials.gltf_colored import with_rig_looks
+from ...materials.surfaces import vertex_normals
 from ...weights import KEY
+from ..buffer import BufferWriter
 from ..builder import GltfBuilder
-from ..container import Document, with_whole_names
-from ..influences import pack_influences, store_influences
-from ..nodes import decompose
-from .write import packed
+from ..container import Document, extensions, with_whole_names
+from ..influences import influence_attributes, pack_influences, store_deform
+from ..nodes import Nodes, decompose
+from ..read.added_skins import add_skins
+from ..read.primitives import primitives
+from ..read.read import BareSource, read_rig
+from ..read.skins import Bind
+from .write import packed, rewritten
 
 MAX_JOINTS = 2**16
 MAX_SHIFT = 1e-3
@@ -69,9 +76,9 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
         builder.add_node(joint)
     if not np.array_equal(rig.world, np.eye(4)):
         builder.json["nodes"][count]["matrix"] = rig.world.T.ravel().tolist()
-    influences = pack_influences(rig.weights)  # type: ignore[arg-type]
     attributes = _attributes(builder, rig.mesh)
-    attributes |= store_influences(builder.buffer, influences, count, {})
+    influences = influence_attributes(pack_influences(rig.weights), count)  # type: ignore[arg-type]
+    attributes |= {name: builder.buffer.store(one) for name, one in influences.items()}
     mesh = builder.add_mesh(rig.name, attributes, rig.mesh.faces)
     binds, deform = inverses(rig.skeleton), {KEY: rig.skeleton.deform.tolist()}
     skin = builder.add_skin(list(range(count)), binds, extras=deform)
@@ -128,11 +135,8 @@ def bind_frames(skeleton: Skeleton) -> NDArray:
 
 
 def inverses(skeleton: Skeleton) -> NDArray:
-    """Return the inverse bind matrices; their linear parts are orthogonal."""
-    matrices = bind_frames(skeleton)
-    matrices[:, :3, :3] = matrices[:, :3, :3].transpose(0, 2, 1)
-    matrices[:, :3, 3:] = -matrices[:, :3, :3] @ matrices[:, :3, 3:]
-    return matrices
+    """Return the inverse bind matrices."""
+    return np.linalg.inv(bind_frames(skeleton))
 
 
 def _transform(matrix: NDArray) -> dict[str, list[float]]:
@@ -156,3 +160,63 @@ def _local_poses(rig: Rig, clip: Clip) -> dict[str, NDArray]:
     if np.abs(scale - 1).max() > 1e-6:
         poses["scale"] = scale
     return poses
+
+
+INSTANCES = "EXT_mesh_gpu_instancing"
+
+
+def can_be_skinned(rig: Rig) -> bool:
+    """Return whether the document that a rig's mesh came from can hold its skeleton and weights."""
+    source = rig.source
+    if not isinstance(source, BareSource):
+        return False
+    if not source.document.is_gltf:  # it has no more than a new document
+        return False
+    if not np.array_equal(rig.mesh.vertices, source.mesh.vertices):
+        return False
+    return np.array_equal(rig.mesh.faces, source.mesh.faces) and all(
+        _is_plain(source, node) for node in source.placed
+    )
+
+
+def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
+    """Return the files of a document that gets joints and skins, and is then saved as any other."""
+    source: BareSource = rig.source
+    stored, skeleton = source.document, rig.skeleton
+    copied = {"json": json.loads(json.dumps(stored.json)), "buffers": list(stored.buffers)}
+    document = replace(stored, warnings=[], **copied)
+    first = len(document.json["nodes"])
+    document.json["nodes"] += joint_nodes(skeleton, first)
+    armature = first + len(skeleton.joints)
+    _stand(document.json, armature)
+    bind = Bind(nodes=list(range(first, armature)), inverse=list(inverses(skeleton)))
+    add_skins(document, Nodes(document), bind, source.placed)
+    store_deform(document.json, bind.skins.items(), skeleton.deform)
+    if rig.clips:
+        builder = GltfBuilder("")
+        builder.json = document.json
+        builder.buffer = BufferWriter(document.json, document.buffers)
+        for clip in rig.clips:
+            add_clip(builder, rig, clip, first)
+        document.buffers = [builder.buffer.finish()]
+    read = read_rig(document)
+    joints = replace(read.skeleton, deform=skeleton.deform)
+    return rewritten(replace(read, skeleton=joints, weights=rig.weights), path)
+
+
+def _is_plain(source: BareSource, node: int) -> bool:
+    """Return whether a node's mesh can be skinned: triangles only, and it mirrors nothing."""
+    owner = source.document.json["nodes"][node]
+    of_triangles = all(one.draws_triangles for one in primitives(source.document, owner["mesh"]))
+    copied = INSTANCES in extensions(owner)
+    return of_triangles and not copied and bool(np.linalg.det(source.placed[node][:3, :3]) > 0)
+
+
+def _stand(document: dict[str, Any], node: int) -> None:
+    """Add the last node to the scene."""
+    scenes = document.setdefault("scenes", [{}])
+    scene = scenes[document.setdefault("scene", 0)]
+    if "nodes" not in scene:
+        below = {child for one in document["nodes"] for child in one.get("children", [])}
+        scene["nodes"] = [i for i in range(node) if i not in below]
+    scene["nodes"].append(node)

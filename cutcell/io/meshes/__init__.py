@@ -1,1 +1,0 @@
-"""Mesh files without a skin, and skeletons in JSON beside them."""
