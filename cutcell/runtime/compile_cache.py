@@ -47,7 +47,7 @@ MAX_OLD_SETS = 3
 ANNOUNCEMENT = "Compiling, once on this machine. This takes about a minute."
 COMPLETE = "complete"
 """Name of the file that marks a set with all functions of a binding."""
-PATIENCE, POLL_EVERY = 60.0, 0.02
+PATIENCE, LOOK_EVERY = 60.0, 0.02
 """Seconds to wait for a function that another process compiles, and between two looks at it."""
 
 refusals: list[str] = []
@@ -123,7 +123,7 @@ def _lock(name: str, stack: ExitStack) -> None:
                 try:
                     return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
-                    time.sleep(POLL_EVERY)
+                    time.sleep(LOOK_EVERY)
             return None
     return None
 

@@ -32,8 +32,8 @@ from ...rays import grown
 from .clusters import ROOT, Clusters
 from .expansion import (
     ERROR,
-    ROUNDING,
-    SIZE,
+    EXPANSION_SIZE,
+    ROUNDING_ERROR,
     LocalExpansions,
     add_clusters,
     add_far_clusters,
@@ -41,7 +41,7 @@ from .expansion import (
     variation,
 )
 
-BLOCK = 8
+BLOCK_CELLS = 8
 """Cells along the side of the blocks that are either constant or classified cell by cell."""
 CONSTANT = -(1 << 20)
 """A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
@@ -51,9 +51,9 @@ SMALLEST = 2
 """Cells along the side of blocks that are not halved: the queries are no dearer."""
 WORTH = 20
 """Ambiguous midpoints for which it pays to halve a block."""
-TOLERANCE = 5e-3
+SPLIT_ERROR = 5e-3
 """Clusters of a larger error in a block are split."""
-COUNT = SIZE + 3
+COUNT = EXPANSION_SIZE + 3
 """The column of an expansion's row, after coefficients and centre, for the number of near
 clusters."""
 DEPTH = 12
@@ -91,9 +91,9 @@ def classify_cells(
     report: Tell = lambda done: None,
 ) -> CellClasses:
     """Bound the winding number of the caps over the cells of the lattice."""
-    blocks = -(-resolution // BLOCK)
+    blocks = -(-resolution // BLOCK_CELLS)
     coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(tau)), np.int32)
-    corners, top = np.zeros((0, 3), np.int64), BLOCK
+    corners, top = np.zeros((0, 3), np.int64), BLOCK_CELLS
     if len(clusters.apex):
         while 4 * top < resolution:
             top *= 2
@@ -117,7 +117,7 @@ def classify_cells(
         rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
-    columns = (0, SIZE), (SIZE, COUNT)
+    columns = (0, EXPANSION_SIZE), (EXPANSION_SIZE, COUNT)
     local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
     return CellClasses(coarse, fine, LocalExpansions(centre, local, start, near))
 
@@ -129,14 +129,21 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     Returns which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
     expansions that these name: coefficients, centre, COUNT; and the near clusters.
     """
-    blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
+    blocks, fine = (
+        np.empty((16, 3), np.int32),
+        np.empty((16, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), np.int32),
+    )
     expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
     rows = stored = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
     copy_to(corner, waiting[0])
     waiting[0, 3], waiting[0, 4] = top, 1
     # For each ancestor of the current block: its centre, far expansion and near clusters.
-    centre, far, local = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
+    centre, far, local = (
+        np.zeros((DEPTH, 3)),
+        np.zeros((DEPTH, EXPANSION_SIZE)),
+        np.empty(EXPANSION_SIZE),
+    )
     near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
     near[0, 0] = ROOT
     while count:
@@ -155,19 +162,19 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, TOLERANCE)
+        add_clusters(clusters, close, local, q, reach, SPLIT_ERROR)
         cell_class = _class_of(local, half, size, tau)
-        a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
-        if size >= BLOCK and cell_class < 0:
+        a, b, c, wide = x // BLOCK_CELLS, y // BLOCK_CELLS, z // BLOCK_CELLS, size // BLOCK_CELLS
+        if size >= BLOCK_CELLS and cell_class < 0:
             coarse[a : a + wide, b : b + wide, c : c + wide] = cell_class
             continue
-        if size == BLOCK:
+        if size == BLOCK_CELLS:
             if rows == len(fine):
                 blocks, fine = grown(blocks), grown(fine)
             blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
             coarse[a, b, c] = rows
             rows += 1
-        if size > BLOCK or (cell_class == AMBIGUOUS and size > SMALLEST):
+        if size > BLOCK_CELLS or (cell_class == AMBIGUOUS and size > SMALLEST):
             count = _halve(waiting, count)
             continue
         if cell_class >= 0:
@@ -176,7 +183,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             row = expanded[stored]
             level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
             copy_to(far[level] if cell_class == AMBIGUOUS else local, row)
-            row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
+            row[EXPANSION_SIZE], row[EXPANSION_SIZE + 1], row[EXPANSION_SIZE + 2] = q
             row[COUNT] = 0
             if cell_class == AMBIGUOUS:
                 close = near[level, : nears[level]]
@@ -187,7 +194,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
                 listed += len(close)
             cell_class = stored
             stored += 1
-        i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
+        i, j, k = x % BLOCK_CELLS, y % BLOCK_CELLS, z % BLOCK_CELLS
         fine[rows - 1, i : i + size, j : j + size, k : k + size] = cell_class
     return (
         blocks[:rows].copy(),
@@ -214,7 +221,7 @@ def _halve(waiting, count):
 @compiled
 def _class_of(local, half, size, tau):
     """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
-    error = local[ERROR] + ROUNDING
+    error = local[ERROR] + ROUNDING_ERROR
     if error >= 0.5:
         return AMBIGUOUS
     slope = variation(local, half)

@@ -39,7 +39,7 @@ from . import multipole
 
 ROOT = 1
 """The index of the cluster of all caps."""
-LEAF_SIZE = 4
+CAPS_A_LEAF = 4
 """Caps in a leaf of the tree, at most."""
 
 
@@ -86,7 +86,7 @@ def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.in
     Returns the order, shape (l,), and where each leaf begins in it, (m + 1,).
     """
     count, level, leaves = len(points), 1, 1
-    while leaves * LEAF_SIZE < count:
+    while leaves * CAPS_A_LEAF < count:
         leaves *= 2
     order, start = np.arange(count), np.arange(leaves + 1) * count // leaves
     while level < leaves:
@@ -111,7 +111,7 @@ def _measure(
     leaves = len(start) - 1
     sphere = np.zeros((2 * leaves, 6))
     if len(rim) == 0:
-        return sphere, np.zeros((2 * leaves, multipole.SIZE))
+        return sphere, np.zeros((2 * leaves, multipole.MOMENTS_SIZE))
     before = np.arange(len(rim)) - 1
     before[first[:-1]] = first[1:] - 1
     corners = np.stack([rim, rim[before], np.repeat(apex, np.diff(first), axis=0)], axis=1)

@@ -28,16 +28,16 @@ from ....runtime.compiled import compiled, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
 
-SIZE = 10
-ERROR = SIZE - 1
+EXPANSION_SIZE = 10
+ERROR = EXPANSION_SIZE - 1
 """The column of the error bound."""
-NEGLIGIBLE = 5e-3
+FAR_ERROR = 5e-3
 """A cluster whose error in a ball is at most this is far from the ball."""
-ROUNDING = 1e-9
+ROUNDING_ERROR = 1e-9
 """Beyond the error bound, for rounding."""
 COARSE = 0.3
 """Near clusters of a larger error are split, to see if parts of them are far."""
-SMALL = 1e-60
+RESCALED_BELOW = 1e-60
 """Products are rescaled below this, and above its inverse, before they under- or overflow."""
 USELESS = 0.5
 """With a larger error an expansion decides nothing."""
@@ -99,7 +99,7 @@ def add_far_clusters(clusters, among, local, near, q, reach):
         k, end = top, next_cluster(top)
         while k != end:
             r, distance, error = _relative(clusters, k, q, reach)
-            if error <= NEGLIGIBLE:
+            if error <= FAR_ERROR:
                 add_multipole(local, clusters.moments[k], r, distance)
                 local[ERROR] += error
             elif error > COARSE and clusters.sphere[k, 3] > reach and k < leaves:
@@ -160,7 +160,7 @@ def _winding_number(rim, apex, q):
         elif was < 0 and triple < 0 and y >= 0:
             turns -= 1
         size = abs(x) + abs(y)
-        if 0 < size < SMALL or size > 1 / SMALL:
+        if 0 < size < RESCALED_BELOW or size > 1 / RESCALED_BELOW:
             x, y = x / size, y / size
         b, lb = a, la
     return turns + np.arctan2(y, x) / (2 * np.pi)

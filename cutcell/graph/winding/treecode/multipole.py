@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ....geometry.vectors import triangle_normal
 from ....runtime.compiled import compiled
 
-SIZE = 19
+MOMENTS_SIZE = 19
 MONOMIALS = (
     *((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)),
     *((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 0, 1), (0, 0, 2), (0, 1, 1), (1, 1, 2), (0, 2, 2)),

@@ -23,12 +23,12 @@ from ...segments import NONE, Segments
 from ...surface import Surface
 from ..exact import boundary_angles
 from .caps import smallest_caps
-from .cells import BLOCK, CONSTANT, classify_cells
+from .cells import BLOCK_CELLS, CONSTANT, classify_cells
 from .clusters import build_tree
 from .queries import winding_numbers_of_caps
 
 DECIDED = -1
-BITS = BLOCK.bit_length() - 1
+BITS = BLOCK_CELLS.bit_length() - 1
 """log2 of BLOCK."""
 
 
@@ -73,12 +73,14 @@ class TreecodeWindingNumbers:
         if self._surface.is_closed and self._tau > 0:
             return np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
         may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
-        first = BLOCK * may_be_inside.argmax(axis=2)
-        last = BLOCK * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
+        first = BLOCK_CELLS * may_be_inside.argmax(axis=2)
+        last = BLOCK_CELLS * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
         is_outside = ~may_be_inside.any(axis=2)
         first[is_outside], last[is_outside] = resolution, NONE
         ends = np.stack([first, last], axis=2).astype(np.int32)
-        points = ends.repeat(BLOCK, axis=0)[:resolution].repeat(BLOCK, axis=1)[:, :resolution]
+        points = ends.repeat(BLOCK_CELLS, axis=0)[:resolution].repeat(BLOCK_CELLS, axis=1)[
+            :, :resolution
+        ]
         points = points.reshape(-1, 2)
         points[np.flatnonzero(np.diff(self._cap_hits[axis].start))] = 0, resolution
         return points
@@ -150,7 +152,7 @@ def _by_class(segments, hits, cap_hits, coarse, fine, tau):
         x, y, z = in_space(axis, i, j, cell)
         cell_class = coarse[x >> BITS, y >> BITS, z >> BITS]
         if cell_class >= 0:
-            cell_class = fine[cell_class, x % BLOCK, y % BLOCK, z % BLOCK]
+            cell_class = fine[cell_class, x % BLOCK_CELLS, y % BLOCK_CELLS, z % BLOCK_CELLS]
         chi = total - crossings[gap[s]]
         if cell_class < 0:
             required = cell_class - CONSTANT
