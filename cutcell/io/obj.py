@@ -65,8 +65,8 @@ def parse_obj(text: str) -> ObjMesh:
     places = _lenient(lines["vt"].text, 2, 0.0)
     places[:, 1] = 1 - places[:, 1]
     names = [" ".join(line.split()[1:]) for line in lines["usemtl"].text]
-    number = {name: k for k, name in enumerate(dict.fromkeys(names))}
-    used = np.array([-1, *(number[name] for name in names)], np.int32)
+    materials = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    used = np.array([-1, *(materials[name] for name in names)], np.int32)
     libraries = (" ".join(line.split()[1:]) for line in lines["mtllib"].text)
     return ObjMesh(
         mesh,
@@ -74,7 +74,7 @@ def parse_obj(text: str) -> ObjMesh:
         _of_corners(_lenient(lines["vn"].text, 3, nan), at[:, 2][triangles], (nan, nan, nan)),
         _colors(lines["v"].text),
         used[_before(lines["usemtl"], faces)][polygons],
-        tuple(number),
+        tuple(materials),
         tuple(dict.fromkeys(libraries)),
     )
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import FileError, SkeletonError
 from ..rig import Clip, Rig, Skeleton
+from ..rig.transforms import moved
 from .files import naming
 from .formats import BY_SUFFIX, described, suffixes
 from .gltf.container import Document
@@ -47,8 +48,8 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
     with naming(path):
         kind = path.suffix.lower()
         if kind not in suffixes("read_skeleton"):
-            choices = described("read_skeleton")
-            raise FileError(f'no skeleton can be read from "{kind}"; give {choices}')
+            readable = described("read_skeleton")
+            raise FileError(f'no skeleton can be read from "{kind}"; give {readable}')
         skeleton, world, stored, clips = BY_SUFFIX[kind].module.read_skeleton(path)
         if not len(skeleton.joints):
             raise SkeletonError(
@@ -71,7 +72,7 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
 
 def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
     """Return a skeleton moved by a matrix (4, 4)."""
-    joints, turned = skeleton.joints @ world[:3, :3].T + world[:3, 3], skeleton.orientations
+    joints, turned = moved(skeleton.joints, world), skeleton.orientations
     if turned is not None:
         left, _, right = np.linalg.svd(world[:3, :3])
         turned = left @ right @ turned

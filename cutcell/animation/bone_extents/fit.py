@@ -17,7 +17,7 @@ from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...bones.bones import Bones
-from ...bones.nearest import NodeTree
+from ...bones.nearest import NodeGrid
 from ...geometry.sparse_rows import rows_of_entries
 from ...geometry.triangles import areas
 from ...geometry.vectors import TIE
@@ -43,14 +43,14 @@ near there. Shorter ones have hardly any direction."""
 def fit_bones(
     graph: CutCellGraph,
     skeleton: Skeleton,
-    tree: NodeTree,
+    grid: NodeGrid,
     allowed: NDArray[np.bool_] | None = None,
 ) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight, of each character by itself.
 
     Shapes: allowed (n, j), see `Rig.allowed`; returns aimed (b,).
     """
-    probe = BodyProbe(graph, tree)
+    probe = BodyProbe(graph, grid)
     together = share_a_skin(allowed, len(skeleton.joints))
     parts = []
     for joints, own in characters(skeleton, together):

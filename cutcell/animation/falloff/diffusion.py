@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csr_array
 
-from ...rig.rows import scaled, with_data, with_rows
+from ...rig.rows import rows_of_entries, scaled, with_rows
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads
 from .factors import LANES, Factors
@@ -82,27 +82,28 @@ class Diffusion:
 
     def equilibrium(self, weights: csr_array, report: Tell = lambda done: None) -> csr_array:
         """Solve for weights (k, j), those of some joints or all; rows do not quite sum to one."""
-        is_pulling = weights.data >= MIN_SHARE
-        if not is_pulling.any():
-            return csr_array(weights.shape)
-        columns = csc_array(with_data(weights, weights.data * is_pulling))
-        count = np.diff(columns.indptr)
-        joints = np.flatnonzero(count)
+        joints = weights.shape[1]
+        pulling = np.flatnonzero(weights.data >= MIN_SHARE)
+        row, joint = rows_of_entries(weights)[pulling], weights.indices[pulling]
         # Joints whose weights are near to each other share most of the work.
-        place = self.factors.blocks.position[columns.indices].astype(np.float64)
-        middle = np.add.reduceat(place, columns.indptr[joints]) / count[joints]
-        joints = joints[np.argsort(middle, kind="stable")]
+        count = np.bincount(joint, minlength=joints)
+        place = np.bincount(joint, self.factors.blocks.position[row], joints)
+        order = np.argsort(np.where(count > 0, place / np.maximum(count, 1), np.inf), kind="stable")
+        rank = np.empty(joints, np.int32)
+        rank[order] = np.arange(joints, dtype=np.int32)
+        by_rank = np.argsort(rank[joint], kind="stable")
+        row, rank = row[by_rank], rank[joint][by_rank]
+        right = self.screening[row] * weights.data[pulling][by_rank]
 
-        def solve(group: NDArray[np.intp]) -> tuple[NDArray, NDArray, NDArray]:
-            part = columns[:, group]
-            lane = np.repeat(np.arange(len(group)), np.diff(part.indptr))
-            right = self.screening[part.indices] * part.data
-            row, lane, value = self.factors.solve(part.indices, lane, right, NEGLIGIBLE_WEIGHT)
-            return row, group[lane], value
+        def solve(first: int) -> tuple[NDArray, NDArray, NDArray]:
+            part = slice(*np.searchsorted(rank, (first, first + LANES)))
+            vertex, lane, value = self.factors.solve(
+                row[part], rank[part] - first, right[part], NEGLIGIBLE_WEIGHT
+            )
+            return vertex, order[first + lane], value
 
-        groups = [joints[i : i + LANES] for i in range(0, len(joints), LANES)]
-        solved = in_threads(solve, groups, report)
-        row, joint, value = (np.concatenate(entries) for entries in zip(*solved, strict=True))
-        equilibrium = csr_array((value, (row, joint)), weights.shape)
+        solved = in_threads(solve, range(0, max(np.count_nonzero(count), 1), LANES), report)
+        vertex, joint, value = (np.concatenate(x) for x in zip(*solved, strict=True))
+        equilibrium = csr_array((value, (vertex, joint)), weights.shape)
         equilibrium.sort_indices()
         return equilibrium

@@ -52,24 +52,24 @@ class Factors(NamedTuple):
     def solve(
         self, row: NDArray[np.intp], lane: NDArray[np.intp], right: NDArray[np.float64],
         negligible: float,
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:  # fmt: skip
+    ) -> tuple[NDArray[np.integer], NDArray[np.integer], NDArray[np.float64]]:  # fmt: skip
         """Solve for up to `LANES` right sides with few entries: rows, lanes and values, (e,) each.
 
         Returns the entries of the solutions that are larger than `negligible`. A block whose
         border has none has none either, unless it has a right side (maximum principle).
         """
-        begin, parent = self.blocks.begin, self.blocks.parent
+        count, blocks = len(self.blocks.vertex), len(self.blocks.parent)
         place = self.blocks.position[row]
-        x = np.zeros((len(self.blocks.vertex), LANES))
+        x = np.zeros((count, LANES))
         x[place, lane] = right
-        is_reached, is_negligible = np.zeros((2, len(begin)), np.bool_)
-        is_reached[np.searchsorted(begin, place, "right") - 1] = True
+        is_reached, is_negligible = np.zeros((2, blocks + 1), np.bool_)
+        is_reached[np.searchsorted(self.blocks.begin, place, "right") - 1] = True
         is_negligible[-1] = True  # the parent of those without one
-        _substitute(begin, parent, *self.blocks[4:], self.at, self.value, x,
-                    is_reached, is_negligible, negligible)  # fmt: skip
-        solved = np.flatnonzero(np.repeat(~is_negligible[:-1], np.diff(begin)))
-        k, lane = np.nonzero(x[solved] > negligible)
-        return self.blocks.vertex[solved[k]], lane, x[solved[k], lane]
+        entries = *np.empty((2, count * LANES), np.int32), np.empty(count * LANES)
+        found = _substitute(*self.blocks, self.at, self.value, x,
+                            is_reached, is_negligible, negligible, *entries)  # fmt: skip
+        vertex, lane, value = (array[:found].copy() for array in entries)
+        return vertex, lane, value
 
 
 @vectorized
@@ -138,9 +138,14 @@ def _factorise(
 
 @vectorized
 def _substitute(
-    begin, parent, border_begin, border, at, value, x, is_reached, is_negligible, negligible
-):
-    """Solve for right sides x (k, LANES) in place, where they are not negligible."""
+    vertex, position, begin, parent, border_begin, border, at, value, x,
+    is_reached, is_negligible, negligible, row, lane, entry,
+):  # fmt: skip
+    """Solve for right sides x (k, LANES) in place, where they are not negligible.
+
+    List the entries of the solution that are not, and return their number.
+    """
+    found = 0
     blocks = len(parent)
     for t in range(blocks):
         if not is_reached[t]:
@@ -174,3 +179,8 @@ def _substitute(
                 k = low + j if j < size else border[first + j - size]
                 for c in range(LANES):
                     x[low + i, c] -= value[here + j] * x[k, c]
+            for c in range(LANES):
+                if x[low + i, c] > negligible:
+                    row[found], lane[found], entry[found] = vertex[low + i], c, x[low + i, c]
+                    found += 1
+    return found

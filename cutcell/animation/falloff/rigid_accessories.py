@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...bones.nearest import NodeTree
+from ...bones.nearest import NodeGrid
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig.rows import scaled, single, strongest, with_rows
@@ -105,7 +105,7 @@ def nearest_on_body(
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
     distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
     corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
     part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)

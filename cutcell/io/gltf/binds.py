@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ...rig.transforms import moved
+
 IN_PLACE = 1e-3
 """How far off a joint is still in its place. Lengths are in sizes of the character."""
 ORIGIN = 1e-2
@@ -107,13 +109,13 @@ class BoundSkin:
     def box(self) -> NDArray[np.float64]:
         """Return the corners of the box in the scene, shape (8, 3)."""
         grid = np.stack(np.meshgrid(*self.corners.T, indexing="ij"), axis=-1).reshape(-1, 3)
-        return grid if self.stands is None else _moved(grid, self.stands)
+        return grid if self.stands is None else moved(grid, self.stands)
 
     def shifts(self) -> NDArray[np.float64]:
         """Return how far the nodes of trusted joints are from where all stands, in the scene."""
         if self.stands is None:
             return np.zeros(0)
-        bound = _moved(self.frames[self.is_trusted, :3, 3], self.stands)
+        bound = moved(self.frames[self.is_trusted, :3, 3], self.stands)
         return np.linalg.norm(bound - self.world[self.is_trusted, :3, 3], axis=1)
 
 
@@ -182,7 +184,7 @@ def _far_limit(skin: BoundSkin, size: float, shift: float) -> float:
     stored = np.flatnonzero(~skin.is_held & ~skin.is_blank)
     if skin.stands is None or not len(stored):
         return limit
-    bound = _moved(skin.frames[stored, :3, 3], skin.stands)
+    bound = moved(skin.frames[stored, :3, 3], skin.stands)
     off = np.linalg.norm(bound - skin.world[stored, :3, 3], axis=1) / (size * skin.scale)
     # Where many are off, these nodes are in no pose of the bound character.
     return limit if (off > limit).sum() <= skin.is_trusted.sum() / 2 else np.inf
@@ -242,10 +244,10 @@ def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.flo
     box = np.eye(4)
     box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, np.finfo(float).tiny))
     box[:3, 3] = corners.mean(axis=0)
-    moved, reference = (matrices @ box)[:, :3], (other @ box)[:3]
-    sizes = np.linalg.norm(moved[..., :3], axis=(1, 2))
+    placed, reference = (matrices @ box)[:, :3], (other @ box)[:3]
+    sizes = np.linalg.norm(placed[..., :3], axis=(1, 2))
     sizes = np.maximum(np.maximum(sizes, np.linalg.norm(reference[:, :3])), np.finfo(float).tiny)
-    return np.linalg.norm(moved - reference, axis=(1, 2)) / sizes
+    return np.linalg.norm(placed - reference, axis=(1, 2)) / sizes
 
 
 def invertible(matrices: NDArray) -> NDArray[np.bool_]:
@@ -255,7 +257,3 @@ def invertible(matrices: NDArray) -> NDArray[np.bool_]:
         size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
         finite = np.isfinite(matrices).all(axis=(-2, -1)) & np.isfinite(size)
         return finite & (size > 0) & (np.abs(np.linalg.det(linear)) > 1e-9 * size)
-
-
-def _moved(points: NDArray, matrix: NDArray) -> NDArray[np.float64]:
-    return points @ matrix[:3, :3].T + matrix[:3, 3]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import FileError, SkeletonError
 from ...rig.checks import MAX_COORDINATE
+from ...rig.transforms import composed
 from .container import Document, extensions, indices
 
 NODE_POINTER = re.compile("/nodes/(0|[1-9][0-9]{0,8})/(translation|rotation|scale|weights)")
@@ -87,15 +88,9 @@ class Nodes:
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
         """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, or the scene."""
-        relative = self.local.copy()
-        parents = np.array(self.parents, int)
-        chosen = np.zeros(len(self.raw), bool)
-        chosen[nodes] = True
-        relative[chosen] = np.eye(4)
-        for level in self.levels[1:]:
-            other = level[~chosen[level]]
-            relative[other] = relative[parents[other]] @ relative[other]
-        return relative
+        relative, parents = self.local.copy(), np.array(self.parents, int)
+        relative[nodes], parents[nodes] = np.eye(4), -1
+        return composed(relative, parents)
 
     def in_scene(self) -> list[int]:
         """Return the nodes of the default scene, ascending; all when there is no scene."""

@@ -92,8 +92,8 @@ def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
     """Return what the file of a document stores of the faces of a primitive."""
     if document.surfaces is not None:
         return document.surfaces.meshes.get(one.mesh)
-    primitive, corners = primitives(document, one.mesh)[one.primitive], {}
-    faces = primitive.faces()
+    primitive = primitives(document, one.mesh)[one.primitive]
+    faces, corners = primitive.faces(), dict[str, Any]()
     for key, name, kind in (("normals", "NORMAL", "VEC3"), ("places", "TEXCOORD_0", "VEC2")):
         if name in primitive.attributes:
             with suppress(CutcellError):

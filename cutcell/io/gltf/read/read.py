@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
+from ....rig.transforms import moved
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
 from ..buffer import ranges_in
 from ..constants import FLOAT, ROUNDED
 from ..container import Document, malformed
 from ..influences import read_deform
 from ..nodes import Nodes
-from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
+from .added_skins import bind_accessories, bind_to_bones, read_attachments
 from .clips import read_clips
 from .compressed import plain_document
 from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes

@@ -17,8 +17,7 @@ from ....rig.transforms import relative
 from ...materials.gltf_colored import with_rig_looks
 from ...materials.surfaces import vertex_normals
 from ...weights import DEFORM_KEY
-from ..buffer import BufferWriter
-from ..builder import GltfBuilder
+from ..buffer import BufferWriter, GltfBuilder
 from ..container import Document, extensions, with_whole_names
 from ..influences import influence_attributes, pack_influences, store_deform
 from ..nodes import Nodes, decompose

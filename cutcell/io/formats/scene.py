@@ -1,13 +1,13 @@
-"""FBX and USD: a subprocess reads the scene, which becomes a glTF document.
+"""FBX 6.1 to 7.7, and USD with UsdSkel, as glTF documents, so that one reader does for all.
 
-A scene comes as arrays by name. Of k nodes, the root being the first: `node_names`,
-`node_parents` (-1 for none), `node_transforms` (k, 10: translation, quaternion x y z w, scale),
-`node_hidden`, `node_bones` (whether it is a joint by its own account). Of each mesh K:
+A subprocess reads the scene, which comes as arrays by name. Of k nodes, the root being the first:
+`node_names`, `node_parents` (-1 for none), `node_transforms` (k, 10: translation, quaternion x y z
+w, scale), `node_hidden`, `node_bones` (whether it is a joint by its own account). Of each mesh K:
 `mesh_names[K]`, `mesh_nodes[K]`, `mesh_K_vertices` (n, 3), `mesh_K_faces` (m, 3),
 `mesh_K_place` (4, 4) from its vertices to its node, and if it is skinned `mesh_K_joints` (j,
 nodes), `mesh_K_inverse` (j, 4, 4) and its weights as `mesh_K_rows`, `_columns` and `_values`. Of
-clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `SCENE_CHANNELS`)
-and number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
+clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `PATHS`) and
+number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
 `mesh_K_dropped` names what of a mesh is not read. `scene_surfaces` says what may be there of
 materials and corners.
 """
@@ -21,21 +21,30 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FileError, MeshError
-from ..isolated.run import WorkFailedError, run_isolated
-from ..rig import Rig
-from ..runtime.display import listed
-from .files import read_bytes
-from .gltf.builder import GltfBuilder
-from .gltf.container import Document
-from .gltf.influences import influence_attributes, sorted_influences
-from .gltf.nodes import compose
-from .gltf.read.read import read_rig
-from .materials.surfaces import scene_surfaces
-from .skeletons import SkeletonFile, of_document
+from ...errors import FileError, MeshError
+from ...isolated.run import WorkFailedError, run_isolated
+from ...rig import Rig
+from ...rig.transforms import composed
+from ...runtime.display import listed
+from ..files import read_bytes
+from ..gltf.buffer import GltfBuilder
+from ..gltf.container import Document
+from ..gltf.influences import influence_attributes, sorted_influences
+from ..gltf.nodes import compose
+from ..gltf.read.read import read_rig
+from ..materials.surfaces import scene_surfaces
+from ..skeletons import SkeletonFile, of_document
 
-SCENE_WEIGHTS = ("columns", "values")
-SCENE_CHANNELS = (("translation", 3), ("rotation", 4), ("scale", 3))
+SUFFIXES = {
+    ".fbx": rb"Kaydara FBX|;\s*FBX",
+    ".usd": rb"PXR-USDC|#usda",
+    ".usda": rb"#usda",
+    ".usdc": rb"PXR-USDC",
+    ".usdz": rb"PK",
+}
+NOTE = "USD with cutcell[usd]"
+WEIGHTS = ("columns", "values")
+PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
 """Most influences of a vertex; sixteen sets of glTF hold them."""
 
@@ -138,7 +147,7 @@ class _SceneBuilder(GltfBuilder):
         end = 0
         for clip, node, path, count in scene["tracks"].tolist():
             keys = scene["keys"][end : (end := end + count)]
-            name, width = SCENE_CHANNELS[path]
+            name, width = PATHS[path]
             times = self.floats(keys[:, :1], target=None, bounds=True)
             self.add_track(clips[clip], node, name, times, keys[:, 1 : 1 + width])
         if clips:
@@ -146,24 +155,24 @@ class _SceneBuilder(GltfBuilder):
 
 
 FBX_BINARY = b"Kaydara FBX Binary"
-FBX_MIN_SECONDS, FBX_SECONDS_A_MEGABYTE = 60.0, 5.0
-FBX_MIN_MEMORY, FBX_MEMORY_A_BYTE = 2**30, 100
+SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
+MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
 """Limits of the FBX reader. A byte of text takes some 20; arrays may be packed."""
 USD_SECONDS, USD_MEMORY = 120.0, 2**32
-SCENE_PARTS = {
+READ = {
     "FBX": "meshes, skeleton, weights and clips",
     "USD": "meshes, skeletons, weights and motion",
 }
 
 
-def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
-    """Load a file whose kind is "FBX" or "USD"; see `cutcell.load`."""
-    scene = scene_arrays(path, kind)
+def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
+    """Load an FBX or USD file; see `cutcell.load`."""
+    kind, scene = _kind(path), scene_arrays(path)
     document, world = scene_document(scene, path, f"cutcell, from {kind}")
     lost = (
-        f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {SCENE_PARTS[kind]} are read, with "
-        "normals, texture coordinates, and of its materials the base colours with their images; "
-        "it is saved as a GLB without what else its materials have"
+        f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {READ[kind]} are read, with normals, "
+        "texture coordinates, and of its materials the base colours with their images; it is saved "
+        "as a GLB without what else its materials have"
     )
     dropped = _dropped(scene)
     lost += "; not read: " * bool(dropped)
@@ -177,16 +186,20 @@ def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
     return read_rig(document, world, accessories, why_bare)
 
 
-def read_scene_skeleton(path: Path, kind: str) -> SkeletonFile:
-    """Return the bones of a file whose kind is "FBX" or "USD"."""
-    scene = scene_arrays(path, kind)
+def read_skeleton(path: Path) -> SkeletonFile:
+    """Read the bones and the clips of a scene, which need not have a mesh."""
+    scene = scene_arrays(path)
     document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
     return of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
 
 
-def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
-    """Return the arrays of an FBX or USD file; see `document`."""
-    data = read_bytes(path)
+def _kind(path: Path) -> str:
+    return "FBX" if path.suffix.lower() == ".fbx" else "USD"
+
+
+def scene_arrays(path: Path) -> Mapping[str, NDArray]:
+    """Return the arrays of an FBX or USD file, as above."""
+    data, kind = read_bytes(path), _kind(path)
     job = {"path": np.array(str(path.resolve()))}
     seconds, memory, extra = USD_SECONDS, USD_MEMORY, "cutcell[usd]"
     if kind == "FBX":
@@ -195,8 +208,8 @@ def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
                 "is not an FBX file: neither binary nor text in its first lines says so"
             )
         job, extra = {"data": np.frombuffer(data, np.uint8)}, "cutcell"
-        seconds = FBX_MIN_SECONDS + FBX_SECONDS_A_MEGABYTE * len(data) / 2**20
-        memory = FBX_MIN_MEMORY + FBX_MEMORY_A_BYTE * len(data)
+        seconds = SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
+        memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     task, who = f"cutcell.isolated.{kind.lower()}:read", f"the {kind} reader"
     try:
         return run_isolated(task, job, seconds, who, memory, extra)
@@ -216,8 +229,9 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
     the nearest bone above that it knows. In a scene without any weights each mesh that is
     below no bone, or each if all are below one, is bound to all bones in their current position.
     """
-    parents = scene["node_parents"].tolist()
-    world = _worlds(scene["node_transforms"], parents)
+    parents, transforms = scene["node_parents"].tolist(), scene["node_transforms"]
+    local = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
+    world = composed(local, scene["node_parents"])
     bones = np.flatnonzero(scene["node_bones"]).tolist()
     meshes = range(len(scene["mesh_names"]))
     skins: dict[int, SceneSkin] = {
@@ -234,9 +248,7 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
     for k, (joints, inverse) in skins.items():
         trees = {_above(joint, parents)[-1] for joint in joints}
         more = [b for b in bones if b not in assigned and _above(b, parents)[-1] in trees]
-        columns, values = (
-            scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in ("columns", "values")
-        )
+        columns, values = (scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in WEIGHTS)
         # Relative to joints that hold a vertex: the matrices of others may contradict their nodes.
         held = [j for j in np.unique(columns[values > 0]).tolist() if 0 <= j < len(joints)]
         number = {joints[j]: j for j in held or range(len(joints))}
@@ -247,14 +259,6 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
         skins[k] = joints, inverse
         assigned.update(more)
     return skins, stands if _inverse(stands)[1] else None
-
-
-def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
-    world = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
-    for i, parent in enumerate(parents):  # parents come before their children
-        if parent >= 0:
-            world[i] = world[parent] @ world[i]
-    return world
 
 
 def _above(node: int, parents: list[int]) -> list[int]:
