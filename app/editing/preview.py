@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from cutcell.animation.falloff.adjustments import Adjustments
 from cutcell.animation.falloff.division import Division
-from cutcell.animation.falloff.pipeline import RigFalloff, without_tail
+from cutcell.animation.falloff.pipeline import RigFalloff, subtract_floor
 from cutcell.binding.binding import Binding
 from cutcell.editing.edited import adjustments_of, joints_measured
 from cutcell.editing.layers.contents import Computed
@@ -86,7 +86,7 @@ class _IncrementalFalloff:
         changed = _of_joints(division.weights, is_changed)
         weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
         weights = diffusion.whole(weights, division.weights)
-        return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))
+        return subtract_floor(replace(self._falloff, division=division).with_rigid_parts(weights))
 
 
 def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:

@@ -70,7 +70,7 @@ class RigFalloff:
         yield "spread", weights
         weights = self.with_rigid_parts(weights)
         yield "rigid", weights
-        yield "tail", without_tail(weights)
+        yield "tail", subtract_floor(weights)
 
     def with_rigid_parts(self, weights: csr_array) -> csr_array:
         """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
@@ -82,7 +82,7 @@ class RigFalloff:
         return attach_accessories(graph, surface, containment, weights, independent)
 
 
-def without_tail(weights: csr_array) -> csr_array:
+def subtract_floor(weights: csr_array) -> csr_array:
     """Subtract a part of each vertex's largest weight from all of them."""
     tail = WEIGHT_FLOOR * weights.max(axis=1).toarray()
     weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
