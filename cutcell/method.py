@@ -1,46 +1,38 @@
-"""Options of the method: one object that all stages, commands and the page share."""
+"""Options of the method: one object that all stages, commands and the page share.
+
+Each option is declared once, as a field of `Method`, and named by the stage that follows it. The
+command line, the page and the fingerprints read the declarations.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import Any, Literal, TypedDict, get_args
+from typing import Annotated, Any, Literal, TypedDict, get_args, get_type_hints
 
+from .animation import declaration as animation
+from .checks import assign, check_choice
 from .errors import ParameterError
-from .rig.checks import (
-    check_choice,
-    check_flag,
-    check_fraction,
-    check_integer,
-    check_number,
-)
+from .options import Flag, Option, Share, Whole
 
 Connectivity = Literal[6, 26, "any"]
 Leaf = Literal["point", "extend", "fit"]
 Falloff = Literal["rig", "paper"]
 MethodName = Literal["animation", "paper"]
 
-CONNECTIVITIES: tuple[Connectivity, ...] = get_args(Connectivity)
 LEAVES: tuple[Leaf, ...] = get_args(Leaf)
 FALLOFFS: tuple[Falloff, ...] = get_args(Falloff)
 
-MIN_RESOLUTION = 2
 MAX_RESOLUTION = 1024
-MAX_SAMPLES = 1000
-MAX_INFLUENCES = 1024
+_CELLS = "it counts the cells along the mesh's longest side, 64 suits most characters"
 
-LEAF_OF: dict[Falloff, Leaf] = {"rig": "fit", "paper": "point"}
+LEAF_OF: dict[Falloff, Leaf] = {animation.FALLOFF: animation.LEAF, "paper": "point"}
 """The bones that each falloff is made for."""
 ALPHA = 0.5
 """Default of the paper's falloff."""
-RIG_JOINTS = 3
-"""Nearest joints of each vertex that the falloff "rig" divides the surface among, at least: hardly
-a vertex has a fourth. It follows more joints only as the surface around it does."""
 PAPER_JOINTS = 8
 """Nearest joints of each vertex that distances are measured from, at least, with the paper's
 falloff: a path leads through nodes that are nearer to others, and there it must not be dropped."""
-RIG_REACH = 6.0
-"""Times as far as its nearest joint: whatever is farther gets no weight of the falloff "rig"."""
 
 
 class GraphOptions(TypedDict, total=False):
@@ -71,22 +63,12 @@ class Options(GraphOptions, DistanceOptions, WeightOptions):
     """All options of a `Method` beside the resolution."""
 
 
-def check_resolution(resolution: Any) -> int:
-    """Return how many cells a lattice has along each side."""
-    why = "it counts the cells along the mesh's longest side, 64 suits most characters"
-    return check_integer("resolution", resolution, MIN_RESOLUTION, MAX_RESOLUTION, why)
-
-
-def _checked_alpha(alpha: Any, falloff: Falloff) -> float | None:
-    if falloff == "paper":
-        return check_number("alpha", ALPHA if alpha is None else alpha, 0, 1)
-    if alpha is not None:
-        check_number("alpha", alpha, 0, 1)
-        raise ParameterError(
-            f"alpha shapes the paper's falloff and has no effect with falloff={falloff!r}; "
-            "leave it out, or choose falloff='paper'"
-        )
-    return None
+STAGE_OPTIONS: dict[str, tuple[str, ...]] = {
+    "graph": ("resolution", *GraphOptions.__annotations__),
+    "distances": tuple(DistanceOptions.__annotations__),
+    "weights": tuple(WeightOptions.__annotations__),
+}
+"""The options that each stage follows: its fingerprint holds their values."""
 
 
 @dataclass(frozen=True)
@@ -138,37 +120,71 @@ class Method:
     >>> cutcell.bind(rig, method="paper", alpha=0.3)  # doctest: +SKIP
     """
 
-    resolution: int = 64
-    connectivity: Connectivity = "any"
-    winding_threshold: float = 0.5
-    orient: bool = True
-    samples: int = 5
-    leaf: Leaf = None  # type: ignore[assignment]
-    falloff: Falloff = "rig"
-    alpha: float | None = None
-    max_influences: int | None = 4
-    threshold: float = 0.0
+    resolution: Annotated[int, Option(
+        Whole(2, MAX_RESOLUTION, _CELLS), "R",
+        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
+        " more time and memory.",
+        "Resolution R", short="-r",
+    )] = 64  # fmt: skip
+    connectivity: Annotated[Connectivity, Option(
+        {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}, "C",
+        "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
+        " any: at any angle, so that distances are geodesic.",
+        "Paths inside run along",
+    )] = animation.CONNECTIVITY  # fmt: skip
+    winding_threshold: Annotated[float, Option(
+        Share(strictly=True), "T",
+        "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
+        " open mesh.",
+        "Winding threshold τ", slider=(0.01, 0.99, 0.01),
+    )] = 0.5  # fmt: skip
+    orient: Annotated[bool, Option(
+        Flag(), "",
+        "Treat inverted faces as flipped, or use all faces as they are in the file.",
+        "Flip inverted faces",
+    )] = True  # fmt: skip
+    samples: Annotated[int, Option(Whole(1, 1000), "N", "Number of sources along each bone.")] = 5
+    leaf: Annotated[Leaf, Option(
+        {"Points": "point", "Extended": "extend", "Fitted": animation.LEAF}, "L",
+        "End of each bone. point, extend: at the child joints; a joint without children is a point,"
+        " or continues along its parent's direction. fit: from the shape of the body.",
+        "Leaf bones",
+    )] = None  # type: ignore[assignment]  # fmt: skip
+    falloff: Annotated[Falloff, Option(
+        {"Animation": animation.FALLOFF, "Paper": "paper"}, "F",
+        "Decrease of weight with distance. rig: for animation. paper: the paper's kernel (its"
+        " equation 1), a soft feature of the distance.",
+        "Falloff",
+    )] = animation.FALLOFF  # fmt: skip
+    alpha: Annotated[float | None, Option(
+        Share(), "A",
+        "Shape of the paper's falloff, 0 to 1: 0 is linear in the distance, 1 quadratic.",
+        "Smoothness α", slider=(0, 1, 0.01), none="",
+    )] = None  # fmt: skip
+    max_influences: Annotated[int | None, Option(
+        Whole(1, 1024), "K",
+        "Maximum number of joints per vertex: a number, or all. Game engines read 4, so that glTF"
+        " files get no more unless it is given.",
+        "Max influences", none="all",
+    )] = 4  # fmt: skip
+    threshold: Annotated[float, Option(
+        Share(), "W", "Weights below this are dropped, and the rest is scaled to sum to 1.",
+        "Ignore weights below", slider=(0, 0.3, 0.005),
+    )] = 0.0  # fmt: skip
 
     def __post_init__(self) -> None:
-        falloff = check_choice("falloff", self.falloff, FALLOFFS)
-        leaf = LEAF_OF[falloff] if self.leaf is None else self.leaf
-        checked = {
-            "resolution": check_resolution(self.resolution),
-            "connectivity": check_choice("connectivity", self.connectivity, CONNECTIVITIES),
-            "winding_threshold": check_fraction("winding_threshold", self.winding_threshold),
-            "orient": check_flag("orient", self.orient),
-            "samples": check_integer("samples", self.samples, 1, MAX_SAMPLES),
-            "leaf": check_choice("leaf", leaf, LEAVES),
-            "falloff": falloff,
-            "alpha": _checked_alpha(self.alpha, falloff),
-            "threshold": check_number("threshold", self.threshold, 0, 1),
-        }
-        if self.max_influences is not None:
-            checked["max_influences"] = check_integer(
-                "max_influences", self.max_influences, 1, MAX_INFLUENCES
+        falloff = OPTIONS["falloff"].check("falloff", self.falloff)
+        if self.leaf is None:
+            assign(self, leaf=LEAF_OF[falloff])
+        if self.alpha is None and falloff == "paper":
+            assign(self, alpha=ALPHA)
+        for name, option in OPTIONS.items():
+            assign(self, **{name: option.check(name, getattr(self, name))})
+        if self.alpha is not None and falloff != "paper":
+            raise ParameterError(
+                f"alpha shapes the paper's falloff and has no effect with falloff={falloff!r}; "
+                "leave it out, or choose falloff='paper'"
             )
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
 
     def with_options(self, **options: Any) -> Method:
         """Return this method with other options.
@@ -187,11 +203,10 @@ class Method:
         ParameterError
             An option is out of its range, or has no effect.
         """
-        names = [field.name for field in fields(self)]
         for name in options:
-            if name not in names:
-                close = get_close_matches(name, names, n=1)
-                instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(names)}"
+            if name not in OPTIONS:
+                close = get_close_matches(name, OPTIONS, n=1)
+                instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(OPTIONS)}"
                 raise TypeError(f"a method has no option {name!r}; {instead}")
         falloff = check_choice("falloff", options.get("falloff", self.falloff), FALLOFFS)
         if falloff != self.falloff:
@@ -214,15 +229,24 @@ class Method:
     @property
     def reach_needed(self) -> float:
         """Distance relative to the nearest joint's beyond which a joint gets no weight."""
-        return RIG_REACH if self.falloff == "rig" else float("inf")
+        return animation.REACH if self.falloff == animation.FALLOFF else float("inf")
 
 
+OPTIONS: dict[str, Option] = {
+    name: hint.__metadata__[0] for name, hint in get_type_hints(Method, include_extras=True).items()
+}
+"""The declaration of each option."""
 ANIMATION = Method()
 """Weights to animate with (docs/falloff.md): the default of `bind`."""
 PAPER = Method(connectivity=6, falloff="paper", max_influences=None)
 """The paper's method: a 6-connected graph, leaf bones as points, equation 1 for all joints."""
 METHODS: dict[MethodName, Method] = {"animation": ANIMATION, "paper": PAPER}
 """The methods that have names."""
+
+
+def check_resolution(resolution: Any) -> int:
+    """Return how many cells a lattice has along each side."""
+    return int(OPTIONS["resolution"].check("resolution", resolution))
 
 
 def method_of(method: Method | MethodName, resolution: int | None = None, **options: Any) -> Method:
@@ -238,4 +262,6 @@ def joints_needed(falloff: Falloff, max_influences: int | None) -> int | None:
     """Return from how many nearest joints of each vertex a falloff needs distances."""
     if max_influences is None:
         return None
-    return RIG_JOINTS if falloff == "rig" else max(max_influences, PAPER_JOINTS)
+    if falloff == animation.FALLOFF:
+        return animation.NEAREST_JOINTS
+    return max(max_influences, PAPER_JOINTS)

@@ -43,9 +43,10 @@ TORCH = [
 # Each package of the core uses only those before it. The method for animation is one folder, and
 # each stage of a binding uses one part of it.
 ORDER = (
-    "errors", "runtime", "geometry", "rig", "method", "isolated", "io", "graph", "bones",
-    "animation.any_angle", "animation.bone_extents", "geodesics", "pose", "animation.falloff",
-    "weights", "editing", "binding", "templates", "diagnosis", "cli", "__main__",
+    "errors", "checks", "options", "animation.declaration", "method", "runtime", "geometry", "rig",
+    "isolated", "io", "graph", "bones", "animation.any_angle", "animation.bone_extents",
+    "geodesics", "pose", "animation.falloff", "weights", "editing", "binding", "templates",
+    "diagnosis", "cli", "__main__",
 )  # fmt: skip
 MAX_ROOT_ENTRIES = 24
 MAX_FILES = 15

@@ -1,16 +1,24 @@
 """The parameters of the method, with the defaults of `cutcell.bind`."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
-import cutcell
-from cutcell.method import METHODS, GraphOptions, Method, WeightOptions
+import param
 
-GRAPH = ("resolution", *GraphOptions.__annotations__, "leaf")
+import cutcell
+from cutcell.method import METHODS, OPTIONS, STAGE_OPTIONS, Method
+from cutcell.options import Flag, Whole
+
+
+def _shown(*stages: str) -> tuple[str, ...]:
+    return tuple(name for one in stages for name in STAGE_OPTIONS[one] if OPTIONS[name].label)
+
+
+GRAPH = _shown("graph", "distances")
 """Parameters whose change needs new distances."""
 
-WEIGHTS = tuple(WeightOptions.__annotations__)
+WEIGHTS = _shown("weights")
 """Parameters whose change needs new weights, but no new distances."""
 
 
@@ -18,6 +26,36 @@ def default(name: str) -> Any:
     """Return the default of an option of `cutcell.bind`."""
     value = getattr(cutcell.ANIMATION, name)
     return cutcell.PAPER.alpha if name == "alpha" else value
+
+
+def choices_of(names: Iterable[str], **most: int) -> Any:
+    """Return a class with a parameter for each option; some whole numbers end lower."""
+    parameters = {name: _parameter(name, most.get(name)) for name in names}
+    return type("Choices", (param.Parameterized,), parameters)
+
+
+def _parameter(name: str, most: int | None) -> param.Parameter:
+    option, value = OPTIONS[name], default(name)
+    values, label = option.values, option.label
+    if isinstance(values, Mapping):
+        return param.Selector(default=value, objects=dict(values), label=label)
+    if isinstance(values, Flag):
+        return param.Boolean(value, label=label)
+    if isinstance(values, Whole):
+        bounds = (values.low, most) if most else None
+        return param.Integer(
+            value, bounds=bounds, softbounds=(values.low, values.high), label=label
+        )
+    low, high, step = option.slider or (0, 1, 0.01)
+    closed = (not values.strictly,) * 2
+    return param.Number(
+        value,
+        bounds=(0, 1),
+        inclusive_bounds=closed,
+        softbounds=(low, high),
+        step=step,
+        label=label,
+    )
 
 
 def effective(options: dict[str, Any]) -> dict[str, Any]:

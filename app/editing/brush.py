@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_flag, check_integer, shown
 from cutcell.editing.symmetry import joint_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig
-from cutcell.rig.checks import as_array, check_flag, check_integer, shown
+from cutcell.rig.checks import as_array
 
 from .stroke import Brush, PaintSurface, Stroke
 

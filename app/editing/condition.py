@@ -9,12 +9,12 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import LONG, shown
 from cutcell.editing.locks import joint_index
 from cutcell.editing.selections import Neighbours
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.geodesics import BoneDistances
 from cutcell.rig import Rig
-from cutcell.rig.checks import LONG, shown
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 40

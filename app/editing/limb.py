@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer
 from cutcell.errors import SkeletonError
 from cutcell.graph.winding import winding_number
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.checks import check_integer
 from cutcell_viewers.plane_section import plane_outline
 
 DIRECTIONS = 96

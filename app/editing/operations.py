@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, hstack, vstack
 from scipy.spatial import cKDTree
 
+from cutcell.checks import check_choice, check_integer, check_number
 from cutcell.editing.layers.contents import MAX_STEPS
 from cutcell.editing.selections.neighbours import STEP, Neighbours
 from cutcell.editing.symmetry import Mirror, reflected
 from cutcell.errors import ParameterError, WeightsError
-from cutcell.rig.checks import check_choice, check_integer, check_number
 
 from .selected import Selected
 

@@ -13,12 +13,12 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
+from cutcell.checks import check_choice, check_number
 from cutcell.editing.locks import joint_index
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import ParameterError
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas
 from cutcell.rig import Rig, TriangleMesh
-from cutcell.rig.checks import check_choice, check_number
 
 from .reach import SurfaceReach
 from .selected import Selected

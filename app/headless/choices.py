@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cutcell import ANIMATION, Method
+from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell_lab.baselines import METHODS
 
 from ..document.method import GRAPH, method_of

@@ -197,9 +197,9 @@ def _write_page(
     quiet: bool,
 ) -> None:
     from cutcell.binding import bind
+    from cutcell.checks import check_choice
     from cutcell.io import load
     from cutcell.io.files import naming
-    from cutcell.rig.checks import check_choice
     from cutcell.runtime.writing import check_place, write_all
 
     from . import bone_index

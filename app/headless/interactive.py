@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from panel.io.resources import DIST_DIR
 
 from cutcell import Binding, bind
+from cutcell.checks import check_choice
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing
@@ -119,8 +119,7 @@ def page_in_one_file(
 
 def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
     """Return all messages of the page: of each joint, view and clip."""
-    distances = binding.distances.all_joints(progress)
-    complete = replace(binding.distances, of_vertices=distances)
+    complete = binding.distances.of_all_joints(progress)
     state, memo = State(rig=rig, binding=replace(binding, distances=complete)), Memo()
     limit = MAX_CLIP_NUMBERS // max(len(rig.clips), 1)
     clips = [(shown_name(clip.name), clip_part(state, clip, limit)) for clip in rig.clips]
@@ -136,7 +135,7 @@ def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
         **_joints(state, memo, progress),
         "clips": [{"name": name, "clip": part} for name, part in clips if part],
         "mark": _message(Description({"vertex": vertex_mark(rig, 0, binding.weights)})),
-        **_facts(rig, binding, distances),
+        **_facts(rig, binding, complete.joint),
     }
 
 

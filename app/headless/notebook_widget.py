@@ -6,9 +6,9 @@ from typing import Any
 import anywidget
 import traitlets
 
+from cutcell.checks import check_integer
 from cutcell.io.interactive import Page
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_integer
 from cutcell.runtime.notebook import is_attended
 
 from ..features.character import first_joint

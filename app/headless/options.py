@@ -6,8 +6,8 @@ from typing import Any
 
 import param
 
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError
-from cutcell.rig.checks import check_choice, check_number
 
 from ..document.state import State
 from ..features.distance.choices import MAX_MEASURES, MEASURES

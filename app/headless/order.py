@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice, check_number
 from cutcell_viewers.camera import FRONT, Camera
 from cutcell_viewers.description import Description
 from cutcell_viewers.film import Order, ground

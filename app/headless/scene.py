@@ -8,7 +8,6 @@ from cutcell.errors import ParameterError
 from cutcell.pose import pose_at
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress, silent
-from cutcell_lab.metrics import motion_error
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import gap_between
@@ -20,6 +19,7 @@ from ..document.state import State
 from ..features.compare import results as compare
 from ..features.distance import results as distance
 from ..features.graph import results as graph
+from ..features.pose.errors import motion_error
 from ..features.scenes import following, resolve
 from ..features.sweep import sweep_scenes
 from ..features.symmetry import results as symmetry
@@ -79,7 +79,7 @@ def describe(
     clip = clip_named(rig, choices.clip)
     if choices.error and state.panel == "pose":
         gap = gap_between(rig, state.binding.weights, rig.weights, state.blending)  # type: ignore[arg-type]
-        state.motion_error = motion_error(clip_in_scene(rig, clip), gap.lengths, progress)
+        state.motion_error = motion_error(clip_in_scene(rig, clip), gap, progress)
     time = choices.time or 0.0
     return replace(following(state), pose=pose_in_scene(rig, pose_at(clip, time)))
 

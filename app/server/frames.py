@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
+from cutcell.checks import shown
 from cutcell.errors import ParameterError
-from cutcell.rig.checks import shown
 
 MAX_HOST = 253
 """Characters of a host name, at most."""

@@ -162,7 +162,7 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
             tables["weights"] = binding.weights
         if what != "weights":
             unit = binding.graph.lattice.size
-            tables["distances"] = binding.distances.all_joints(progress).T * unit
+            tables["distances"] = binding.distances.of_all_joints(progress).joint.T * unit
         check = partial(progress, "writing the numbers", 0.0)
         save = partial(save_numbers, path, named, settings=settings_of(binding), **tables)
         in_process(save, check=check, ended=ENDED)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from cutcell.diagnosis.finding import TITLES
+from cutcell.diagnosis import TITLES
 
 from ..document.state import State
 from ..features.check.choices import EXPORT

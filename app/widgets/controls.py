@@ -1,9 +1,12 @@
 """Rows of the tables that the sidebar is drawn from, each kind with its style."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import panel_material_ui as pmui
+
+from cutcell.method import OPTIONS
+from cutcell.options import Flag, Whole
 
 from ..document.session import Session
 from ..document.state import State
@@ -68,6 +71,16 @@ def choice(name: str, title: str = "", above: int = 2, **options: Any) -> Any:
     buttons = Control(pmui.RadioButtonGroup, name, **{**style, **options})
     shared = {"visible": options["visible"]} if "visible" in options else {}
     return [caption(title, margin=(above, 0, 0, 0), **shared), buttons] if title else buttons
+
+
+def option(name: str, **options: Any) -> Any:
+    """Return the control of an option of the method, as it is declared."""
+    values, label = OPTIONS[name].values, OPTIONS[name].label
+    if isinstance(values, Mapping):
+        return choice(name, label, above=4, **options)
+    if isinstance(values, Flag):
+        return switch(name, margin=(4, 0, 2, 0), **options)
+    return slider(name, *([pmui.IntSlider] if isinstance(values, Whole) else []), **options)
 
 
 def select(name: str, label: Any, **options: Any) -> Control:

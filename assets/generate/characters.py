@@ -9,9 +9,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_choice, check_flag, check_integer
 from cutcell.errors import MissingLibraryError
 from cutcell.rig import Rig, TriangleMesh
-from cutcell.rig.checks import check_choice, check_flag, check_integer
 
 from .shapes import Limbs, boxed, melted
 

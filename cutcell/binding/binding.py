@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..geodesics import BoneDistances
 from ..graph import CutCellGraph
@@ -22,8 +23,8 @@ class Binding(Summarized):
 
     Parameters
     ----------
-    weights : array, shape (n, j), float64
-        For the rig's own vertices, in their order.
+    rows : csr_array, shape (n, j)
+        Weights of the rig's own vertices, in their order.
     graph : CutCellGraph
     distances : BoneDistances
         Distances from as many of each vertex's nearest joints as the falloff needs.
@@ -36,11 +37,13 @@ class Binding(Summarized):
 
     Attributes
     ----------
+    weights : array, shape (n, j), float64
+        `rows` as an array, made when it is first used.
     stretch : Stretch
         How much of the surface stretches as joints turn, and where.
     """
 
-    weights: NDArray[np.float64]
+    rows: csr_array
     graph: CutCellGraph
     distances: BoneDistances
     seconds: dict[str, float]
@@ -48,15 +51,20 @@ class Binding(Summarized):
     method: Method
 
     @cached_property
+    def weights(self) -> NDArray[np.float64]:
+        """`rows` as an array, made when it is first used."""
+        return self.rows.toarray()
+
+    @cached_property
     def stretch(self) -> Stretch:
         """How much of the surface stretches as joints turn, and where."""
         skeleton = self.distances.skeleton
         assert skeleton is not None
-        return measure_stretch(self.graph, skeleton, self.weights)
+        return measure_stretch(self.graph, skeleton, self.rows)
 
     @property
     def _summary(self) -> dict[str, Any]:
-        vertices, joints = self.weights.shape
+        vertices, joints = self.rows.shape
         return {
             "method": self.method.name,
             "resolution": self.method.resolution,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..animation.falloff.pipeline import RigFalloff
+from ..checks import check_integer
 from ..editing.edited import adjustments_of, edited_rig, joints_measured
 from ..editing.edits import Edits
 from ..editing.layers.layer import Layer
@@ -19,7 +20,6 @@ from ..geometry.segments import distance_to_segment
 from ..graph.fingerprint import distance_fingerprint, graph_fingerprint, require_same
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig import Rig
-from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
 from ..weights.skinning_weights import weight_steps
@@ -219,7 +219,8 @@ def _traced(
     trace = Trace(vertex, method, distances, rig.allowed, adjustments, falloff)
     rows = trace.rows
     for step in weight_steps(distances, method, rig.allowed, adjustments, falloff, progress):
-        row = step.weights[graph.vertex_node[vertex] if step.welded else vertex].copy()
+        number = graph.vertex_node[vertex] if step.welded else vertex
+        row = step.weights[[number]].toarray()[0]
         if step.name == "normalise":
             rows["limit"] = np.where(row > 0, trace.last, 0.0)
         rows[step.name] = row

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..animation.falloff.adjustments import Adjustments
 from ..animation.falloff.division import Division
@@ -16,7 +17,8 @@ from ..geodesics import BoneDistances
 from ..geodesics.moved import MovedDistances
 from ..method import Method
 from ..rig import Rig
-from ..weights.skinning_weights import keep_strongest, of_vertices, skinning_weights
+from ..rig.rows import with_data
+from ..weights.skinning_weights import keep_strongest, skinning_weights
 from .binding import Binding
 
 UNSEEN = 1e-3
@@ -56,11 +58,12 @@ class Preview:
         distances, method = self._distances.measure(rig.skeleton), self._method
         if self._falloff is None:
             weights = skinning_weights(distances, method=method, adjustments=self._adjustments)
+            rows = csr_array(weights)
         else:
             options = method.max_influences, method.threshold
             welded = keep_strongest(distances, self._falloff.weights(distances), *options)
-            weights = of_vertices(distances.graph, welded)
-        return replace(self._binding, distances=distances, weights=weights)
+            rows = welded[distances.graph.vertex_node]
+        return replace(self._binding, distances=distances, rows=rows)
 
 
 class _IncrementalFalloff:
@@ -74,14 +77,16 @@ class _IncrementalFalloff:
         self._falloff, self._adjustments = RigFalloff.over(distances, adjustments), adjustments
         self._spread = self._falloff.diffusion.equilibrium(self._falloff.division.weights)
 
-    def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
+    def weights(self, distances: BoneDistances) -> csr_array:
         """Return the weights (k, j) of welded vertices for changed distances."""
         before, diffusion = self._falloff.division, self._falloff.diffusion
-        weights = self._spread.copy()
-        division = Division.by(distances, before.surface, self._adjustments, before)
-        change = np.abs(division.weights - before.weights).max(axis=0)
-        changed = np.flatnonzero(change > UNSEEN)
-        weights[:, changed] = 0
-        diffusion.solve(division.weights, changed, weights)
-        diffusion.normalise(weights, division.weights)
+        division = Division.by(distances, before.surface, self._adjustments)
+        is_changed = abs(division.weights - before.weights).max(axis=0).toarray() > UNSEEN
+        changed = _of_joints(division.weights, is_changed)
+        weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
+        weights = diffusion.whole(weights, division.weights)
         return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))
+
+
+def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
+    return with_data(rows, rows.data * which[rows.indices])

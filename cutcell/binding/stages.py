@@ -9,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..animation.falloff.surface_operators import surface_of
 from ..editing.edited import adjustments_of, joints_measured
@@ -49,7 +50,7 @@ def measure(
         built = graph or build_graph(rig.mesh, method=method, progress=progress)
     with timed(seconds, "distances"):
         # Another thread computes what the weights need of the surface.
-        surface = submit(lambda: surface_of(built)) if method.falloff == "rig" else None
+        surface = submit(lambda: surface_of(built).dissection) if method.falloff == "rig" else None
         nearest_joints, within = joints_measured(reach, method)
         distances = bone_distances(
             built,
@@ -85,12 +86,11 @@ def bind_base(
     progress("weights", 0.0)
     with timed(seconds, "weights"):
         adjustments = adjustments_of(rig, distances.graph, reach, vertices)
-        weights = last_of(
-            weight_steps(
-                distances, method, rig.allowed, adjustments, progress=progress, scaled=scaled
-            )
+        steps = weight_steps(
+            distances, method, rig.allowed, adjustments, progress=progress, scaled=scaled
         )
-    return Binding(weights, distances.graph, distances, seconds, (), method)
+        rows = last_of(steps)
+    return Binding(rows, distances.graph, distances, seconds, (), method)
 
 
 def bind_layer(
@@ -132,8 +132,11 @@ def with_layers(
     `computed` returns the weights (n, j) of a layer with a `Computed` content; see `apply_layers`
     for `after`.
     """
+    active = [layer for layer in layers if layer.is_active]
+    if not active:
+        return base
     sources = RigSources(rig, base.method, base.graph, computed)
-    return replace(base, weights=apply_layers(base.weights, layers, sources, after))
+    return replace(base, rows=csr_array(apply_layers(base.weights, active, sources, after)))
 
 
 def bind_edited(

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..editing.edits import Edits
 from ..editing.layers import RigSources, vertices_of
@@ -43,7 +44,7 @@ def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
     warnings = (
         *_of_distances(distances),
         *_inferred_bones(rig, distances),
-        *_weightless(rig, distances, binding.weights),
+        *_weightless(rig, distances, binding.rows),
         *_stretches(rig, binding.stretch),
         *_blocked_by_locks(rig, distances.graph, edits.layers),
     )
@@ -85,9 +86,9 @@ def _inferred_bones(rig: Rig, distances: BoneDistances) -> Iterator[str]:
         )
 
 
-def _weightless(rig: Rig, distances: BoneDistances, weights: NDArray[np.float64]) -> Iterator[str]:
+def _weightless(rig: Rig, distances: BoneDistances, weights: csr_array) -> Iterator[str]:
     deform = rig.skeleton.deform
-    weightless = deform & ~weights.any(axis=0)
+    weightless = deform & (weights.sum(axis=0) == 0)
     if weightless.any():
         finer = _finer_resolution(distances, weightless)
         yield (

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_choice
 from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
-from ..rig.checks import check_choice
 
 LONGEST = 20.0
 """Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
@@ -155,12 +155,3 @@ def least_of_joints(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.f
     """Reduce distances of bones (b, t) to those of the joints that have bones."""
     first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
     return np.minimum.reduceat(distance, first, axis=0)
-
-
-def per_joint(distance: NDArray[np.float64], bones: Bones, joints: int) -> NDArray[np.float64]:
-    """Return distances of all joints (j, p), from those of joints that have bones."""
-    if len(distance) == joints:
-        return distance
-    result = np.full((joints, distance.shape[1]), np.inf)
-    result[np.unique(bones.joint)] = distance
-    return result

@@ -60,10 +60,10 @@ def diagnose(
     (most likely a fault) or a note (good to know), with advice. With --json each names the
     vertices, faces and joints at fault.
     """
+    from ..checks import check_choice
     from ..diagnosis import diagnose as examine
     from ..diagnosis import unreadable
     from ..io import check_output, load, save, saving_notes
-    from ..rig.checks import check_choice
 
     if fail_on is not None:
         check_choice("--fail-on", fail_on, FAIL_ON)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from ..method import STAGE_OPTIONS
 from . import options as given
 from .console import for_people, print_result, progress_bars
-from .report import described, report_rows
 
 EPILOG = """Examples:
 
@@ -17,7 +17,7 @@ EPILOG = """Examples:
 
 - `cutcell graph character.glb --json | jq .graph.edges.total`"""
 
-GRAPH_OPTIONS = ("resolution", "connectivity", "winding_threshold", "orient", "samples", "leaf")
+GRAPH_OPTIONS = STAGE_OPTIONS["graph"] + STAGE_OPTIONS["distances"]
 """Options of the method that graph and distances depend on."""
 
 
@@ -43,6 +43,7 @@ def graph(
     from ..io import load
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
+    from .summary import described, report_rows
 
     how = given.chosen_method(options)
     loaded = load(rig, skeleton=skeleton)

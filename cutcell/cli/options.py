@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..io.formats import described
+from ..method import ANIMATION, METHODS, OPTIONS, PAPER, Method, method_of
+from ..options import Option
 from ..runtime.standard_output import output_errors
 from .console import for_people
 
 if TYPE_CHECKING:
     from ..editing import Edits
-    from ..method import Method
 
 METHOD = "The method"
 JOINTS = "Deforming joints"
@@ -154,60 +155,37 @@ Lock = Annotated[
     ),
 ]  # fmt: skip
 
+
+def _row(name: str, option: Option) -> tuple[Any, Any, str, str, str]:
+    """Return the type, default, flags, placeholder and help of an option of the method."""
+    flag = f"--{name.replace('_', '-')}"
+    is_text = isinstance(option.values, Mapping) or bool(option.none)
+    kind: Any = str if is_text else type(getattr(PAPER, name))
+    flags = f"{flag}/--no-{flag[2:]}" if kind is bool else f"{flag} {option.short}"
+
+    def text(value: Any) -> str:
+        if kind is bool:
+            return flags.split("/")[not value]
+        return f"{option.none}" if value is None else f"{value:g}" if kind is float else f"{value}"
+
+    usual, paper = (text(getattr(method, name)) for method in (ANIMATION, PAPER))
+    defaults = usual if usual == paper else f"{usual}; {paper} with --method paper"
+    return (
+        kind | None,
+        None,
+        flags,
+        option.metavar,
+        f"{option.help} Default: {defaults.strip('; ')}.",
+    )
+
+
 METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
     "method": (
         str | None, None, "--method", "M",
         "Defaults of the options below. animation: weights for animation. paper: as in the paper."
         " Default: animation.",
     ),
-    "resolution": (
-        int | None, None, "--resolution -r", "R",
-        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
-        " more time and memory. Default: 64.",
-    ),
-    "connectivity": (
-        str | None, None, "--connectivity", "C",
-        "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
-        " any: at any angle, so that distances are geodesic. Default: any; 6 with --method paper.",
-    ),
-    "winding_threshold": (
-        float | None, None, "--winding-threshold", "T",
-        "Winding number from which a point is inside, between 0 and 1. Lower values fill more of an"
-        " open mesh. Default: 0.5.",
-    ),
-    "orient": (
-        bool | None, None, "--orient/--no-orient", "",
-        "Treat inverted faces as flipped, which is the default, or use all faces as they are in the"
-        " file.",
-    ),
-    "samples": (
-        int | None, None, "--samples", "N", "Number of sources along each bone. Default: 5.",
-    ),
-    "leaf": (
-        str | None, None, "--leaf", "L",
-        "End of each bone. point, extend: at the child joints; a joint without children is a point,"
-        " or continues along its parent's direction. fit: from the shape of the body. Default: fit;"
-        " point with --falloff paper.",
-    ),
-    "falloff": (
-        str | None, None, "--falloff", "F",
-        "Decrease of weight with distance. rig: for animation. paper: the paper's kernel (its"
-        " equation 1), a soft feature of the distance. Default: rig; paper with --method paper.",
-    ),
-    "alpha": (
-        float | None, None, "--alpha", "A",
-        "Shape of the paper's falloff, 0 to 1: 0 is linear in the distance, 1 quadratic."
-        " Default: 0.5.",
-    ),
-    "max_influences": (
-        str | None, None, "--max-influences", "K",
-        "Maximum number of joints per vertex: a number, or all. Game engines read 4. Default: 4;"
-        " all with --method paper, but 4 in glTF files.",
-    ),
-    "threshold": (
-        float | None, None, "--threshold", "W",
-        "Weights below this are dropped, and the rest is scaled to sum to 1. Default: 0.",
-    ),
+    **{name: _row(name, option) for name, option in OPTIONS.items()},
 }  # fmt: skip
 """Type, default, flags, placeholder and help of each option of `Method`, by its field.
 
@@ -259,15 +237,12 @@ def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., No
 
 def chosen_method(options: Mapping[str, Any]) -> Method:
     """Return the method of that name with options from the command line, which may be texts."""
-    from ..method import METHODS, method_of
-    from ..rig.checks import check_choice
+    from ..checks import check_choice
 
     values = {key: value for key, value in options.items() if value is not None}
-    for key in ("connectivity", "max_influences"):
-        if isinstance(text := values.get(key), str) and text.isdecimal():
-            values[key] = int(text)
-    if values.get("max_influences") == "all":
-        values["max_influences"] = None
+    for name, option in OPTIONS.items():
+        if isinstance(text := values.get(name), str):
+            values[name] = None if text == option.none else int(text) if text.isdecimal() else text
     return method_of(check_choice("method", values.pop("method", "animation"), METHODS), **values)
 
 

@@ -1,7 +1,8 @@
 """Faults of rigs: checks that name the elements at fault, and repairs."""
 
 from .cleaning import Cleaned, JointLoss, clean
-from .finding import SEVERITIES, TITLES, Finding, Pose
+from .finding import SEVERITIES, Finding, Pose
+from .kinds import TITLES
 from .repair import Repaired
 from .run import Diagnosis, diagnose, unreadable
 

@@ -7,7 +7,7 @@ from heapq import heappop, heappush
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 
 from ..animation.falloff.diffusion import MIN_CELLS
 from ..animation.falloff.pipeline import TAIL
@@ -144,10 +144,11 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     if len(few):
         method = ANIMATION.with_options(resolution=resolution)
         binding = bind(rig, method=method, graph=subject.graph)
-        mixed = remaining[few] + (before - after)[few, None] * binding.weights[few]
+        mixed = remaining[few] + (before - after)[few, None] * binding.rows[few].toarray()
         most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
         total = mixed.sum(axis=1, keepdims=True)
-        cleaned[few] = total * prune(mixed / total, most, 0.0, np.arange(mixed.shape[1]))
+        pruned = prune(csr_array(mixed / total), most, 0.0, np.arange(mixed.shape[1]))
+        cleaned[few] = total * pruned.toarray()
     progress("weights", 1.0)
     changed = np.flatnonzero((cleaned != weights).any(axis=1))
     return Cleaned(cleaned, *_account(rig, weights - remaining), changed, few)
@@ -156,7 +157,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
 def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the remaining part of each weight, shape (n, j)."""
     welded, distances = subject.welded, subject.distances
-    through = distances.all_joints(subject.progress).T
+    through = distances.of_all_joints(subject.progress).joint.T
     at_welded = np.zeros((len(subject.points), weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)

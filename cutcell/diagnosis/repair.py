@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from ..geometry.weld import weld
@@ -130,11 +131,11 @@ def _together(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights
     sums = np.zeros((len(places), weights.shape[1]))
     np.add.at(sums, which, weights[vertices])
     weights[vertices] = (sums / np.bincount(which)[:, None])[which]
-    return prune(weights, most, 0.0, np.arange(weights.shape[1]))
+    return prune(csr_array(weights), most, 0.0, np.arange(weights.shape[1])).toarray()
 
 
 def _pruned(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:
-    return prune(weights, INFLUENCES, 0.0, np.arange(weights.shape[1]))
+    return prune(csr_array(weights), INFLUENCES, 0.0, np.arange(weights.shape[1])).toarray()
 
 
 def _cleaned(rig: Rig, weights: Weights, vertices: NDArray[np.intp]) -> Weights:

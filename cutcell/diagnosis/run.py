@@ -13,8 +13,9 @@ from ..method import check_resolution
 from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
-from .finding import KINDS, SEVERITIES, Finding, by_severity
+from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
+from .kinds import KINDS
 from .leaks import check_leaks
 from .mesh import check_mesh
 from .parts import check_far_parts, check_parts

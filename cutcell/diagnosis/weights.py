@@ -102,5 +102,5 @@ def through_body(
     if unknown.any():
         bones, sources = distances.bones.subset(unknown), distances.sources.subset(unknown)
         subset = replace(distances, bones=bones, sources=sources)
-        through = subset.all_joints(subject.progress)[joint, vertex]
+        through = subset.of_all_joints(subject.progress).at(joint, vertex)
     return through

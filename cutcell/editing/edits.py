@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..checks import assign, check_choice, check_flag, check_kind, check_number, one_line, shown
 from ..errors import FileError, ParameterError
-from ..rig.checks import assign, check_choice, check_flag, check_kind, check_number, one_line, shown
 from ..runtime.writing import write_all
 from .layers.contents import Computed, FromFile, Rename, checked_options
 from .layers.layer import Layer

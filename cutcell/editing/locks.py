@@ -8,9 +8,9 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import LONG, check_integer, one_line, shown
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton
-from ..rig.checks import LONG, check_integer, one_line, shown
 from ..rig.names import folded
 
 

@@ -8,10 +8,10 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_flag, check_integer
 from ..errors import WeightsError
 from ..method import ANIMATION, Method, MethodName, method_of
 from ..rig import Rig
-from ..rig.checks import check_flag, check_integer
 from .layers import RigSources, apply_layers
 from .layers.contents import MAX_STEPS, Locked, Mirrored, Smoothed
 from .layers.layer import Layer

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array, vstack
 
 from ..bones.bones import Bones, Sources
 from ..errors import WeightsError
+from ..geometry.sparse_rows import chosen_entries, rows_of_entries, with_columns
 from ..graph import CutCellGraph
 from ..rig.checks import as_array
 from ..runtime.progress import Progress
@@ -36,8 +38,8 @@ def allowed_distances(
     within: float,
     allowed: NDArray[np.bool_],
     progress: Progress,
-) -> tuple[NDArray[np.float64], int | None]:
-    """Compute the distances (j, n) of the joints that each vertex may follow.
+) -> tuple[csr_array, int | None]:
+    """Compute the distances (n, j) of the joints that each vertex may follow.
 
     The nearest joints are measured once for each set of joints that vertices may follow, or all
     joints where that is sooner. Also returns how many were measured, None for all.
@@ -45,24 +47,25 @@ def allowed_distances(
     Shapes: allowed (n, j).
     """
     node, joints = solver.graph.vertex_node, np.unique(bones.joint)
-    result = np.full((allowed.shape[1], len(node)), np.inf)
     keys = _row_keys(allowed[:, joints])
     _, first, group = np.unique(keys, return_index=True, return_inverse=True)
     # As many other joints are measured at each vertex.
     if nearest_joints is None or len(first) * 2 * nearest_joints > len(joints):
         by_node = solver.paths(bones, sources, progress=progress)
-        result[joints] = by_node.take(node, axis=1)
-        result[~allowed.T] = np.inf
-        return result, None
+        rows = with_columns(by_node[node], joints, allowed.shape[1])
+        return chosen_entries(rows, allowed[rows_of_entries(rows), rows.indices]), None
+    parts = []
     for k, example in enumerate(first):
         progress("distances", k / len(first))
-        chosen, vertices = allowed[example, bones.joint], np.flatnonzero(group == k)
-        targets, number = np.unique(node[vertices], return_inverse=True)
+        chosen = allowed[example, bones.joint]
+        targets, number = np.unique(node[group == k], return_inverse=True)
         by_node = solver.paths(
             bones.subset(chosen), sources.subset(chosen), nearest_joints, within, targets=targets
         )
-        result[np.ix_(np.unique(bones.joint[chosen]), vertices)] = by_node[:, number]
-    return result, nearest_joints
+        number_of_joint = np.unique(bones.joint[chosen])
+        parts.append(with_columns(by_node[number], number_of_joint, allowed.shape[1]))
+    place = np.argsort(np.argsort(group, kind="stable"))  # of each vertex, group by group
+    return csr_array(vstack(parts, format="csr")[place]), nearest_joints
 
 
 def _row_keys(rows: NDArray[np.bool_]) -> NDArray[np.void]:

@@ -3,20 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
-from ..bones.bones import Bones, Sources, least_of_joints, per_joint
+from ..bones.bones import Bones, Sources, least_of_joints
+from ..checks import check_integer, check_number
 from ..errors import ParameterError, SkeletonError
+from ..geometry.sparse_rows import (
+    chosen_entries,
+    column_of_least,
+    from_dense,
+    least,
+    lookup,
+    rows_of_entries,
+    to_dense,
+    with_columns,
+    with_rows,
+)
 from ..graph import CutCellGraph
 from ..graph.fingerprint import Fingerprint, distance_fingerprint
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
-from ..rig.checks import check_integer, check_number, check_positions
+from ..rig.checks import check_positions
 from ..rig.inputs import SkeletonLike, as_skeleton
 from ..rig.rig import check_units
 from ..runtime.progress import Progress, silent
@@ -33,11 +46,12 @@ class BoneDistances(Summarized):
 
     Parameters
     ----------
-    at_welded : array, shape (j, k), float64
-        `joint` per welded vertex: the k first nodes of the graph. Where vertices at one place
-        may follow different joints, that of the first one.
-    of_vertices : array, shape (j, n), or None
-        `joint`, if vertices at one place may follow different joints.
+    rows : csr_array, shape (k, j)
+        The distances from the joints that were measured at each welded vertex: the k first nodes
+        of the graph. Joints ascend; an entry may be 0. Where vertices at one place may follow
+        different joints, those of the first one.
+    of_vertices : csr_array, shape (n, j), or None
+        The rows of all vertices, if vertices at one place may follow different joints.
     nearest_joints : int or None
         Each vertex has the distances of at least this many of its nearest joints; None: of all.
     bones : Bones
@@ -60,8 +74,8 @@ class BoneDistances(Summarized):
         Fingerprint of graph, skeleton and options; empty in a copy by `replace`.
     """
 
-    at_welded: NDArray[np.float64]
-    of_vertices: NDArray[np.float64] | None
+    rows: csr_array
+    of_vertices: csr_array | None
     nearest_joints: int | None
     bones: Bones
     sources: Sources
@@ -79,7 +93,7 @@ class BoneDistances(Summarized):
     @property
     def _summary(self) -> dict[str, Any]:
         return {
-            "joints": len(self.at_welded),
+            "joints": self.rows.shape[1],
             "vertices": len(self.fallback),
             "unreached_vertices": int(np.count_nonzero(self.fallback)),
             "bones": len(self.bones.joint),
@@ -92,42 +106,53 @@ class BoneDistances(Summarized):
         """The graph that paths run along."""
         return self.solver.graph
 
-    @cached_property
+    def _rows_at(self, vertex: Any) -> csr_array:
+        """Return the rows of some vertices, indexed as an array of shape (n,)."""
+        if self.of_vertices is not None:
+            return self.of_vertices[vertex]
+        return self.rows[self.graph.vertex_node[vertex]]
+
+    @property
     def joint(self) -> NDArray[np.float64]:
-        """Distances from joints to vertices, shape (j, n), float64.
+        """Distances from joints to vertices, shape (j, n), float64, made on access.
 
         The minimum over the bones of each joint; infinite where no path leads, for joints that
         may not carry weight, and for joints that are not among the nearest of a vertex. n is the
         number of vertices of the mesh as given.
         """
-        if self.of_vertices is not None:
-            return self.of_vertices
-        return self.at_welded.take(self.graph.vertex_node, axis=1)
+        return to_dense(self._rows_at(slice(None))).T
+
+    @property
+    def at_welded(self) -> NDArray[np.float64]:
+        """`joint` per welded vertex, shape (j, k), made on access."""
+        return to_dense(self.rows).T
 
     def at(self, joint: Any, vertex: Any) -> NDArray[np.float64]:
-        """Return the distances from some joints to some vertices, indexed as `joint` would be.
-
-        Unlike `joint` it keeps nothing in memory.
-        """
-        if self.of_vertices is not None:
-            return np.asarray(self.of_vertices[joint, vertex])
-        return np.asarray(self.at_welded[joint, self.graph.vertex_node[vertex]])
+        """Return the distances from some joints to some vertices, indexed as `joint` would be."""
+        number, vertices = (
+            np.arange(self.rows.shape[1])[joint],
+            np.arange(len(self.fallback))[vertex],
+        )
+        if vertices.ndim and (isinstance(joint, slice) or isinstance(vertex, slice)):
+            number = number[..., None]
+        row = np.arange(vertices.size).reshape(vertices.shape)
+        return lookup(self._rows_at(vertices.ravel()), row, number)
 
     @property
     def nearest_joint(self) -> NDArray[np.intp]:
         """The joint that is nearest to each vertex, shape (n,)."""
-        return self._over_joints(np.argmin)
+        return self._over_joints(column_of_least)
 
     @property
     def least(self) -> NDArray[np.float64]:
         """The distance of the nearest joint to each vertex, shape (n,)."""
-        return self._over_joints(np.min)
+        return self._over_joints(least)
 
-    def _over_joints(self, reduce: Callable[..., NDArray[Any]]) -> NDArray[Any]:
+    def _over_joints(self, reduce: Callable[[csr_array], NDArray[Any]]) -> NDArray[Any]:
         """Reduce distances over the joints, (n,)."""
         if self.of_vertices is not None:
-            return reduce(self.of_vertices, axis=0)
-        return reduce(self.at_welded, axis=0)[self.graph.vertex_node]
+            return reduce(self.of_vertices)
+        return reduce(self.rows)[self.graph.vertex_node]
 
     @cached_property
     def inside(self) -> Inside:
@@ -147,7 +172,7 @@ class BoneDistances(Summarized):
         of_joint = self.bones.joint == joint
         bones, sources = self.bones.subset(of_joint), self.sources.subset(of_joint)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        return self.solver.paths(bones, sources, targets=everywhere)[0]
+        return to_dense(self.solver.paths(bones, sources, targets=everywhere))[:, 0]
 
     def on_mesh(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
@@ -155,21 +180,21 @@ class BoneDistances(Summarized):
         Vertices not reached through the body have their value in `joint`. See `field` for errors.
         """
         through = self.field(joint)[self.graph.vertex_node]
-        return np.where(self.fallback == REACHED, through, self.joint[joint])
+        return np.where(self.fallback == REACHED, through, self.at(joint, slice(None)))
 
-    def all_joints(self, progress: Progress = silent) -> NDArray[np.float64]:
-        """Compute the distances of all joints at every vertex, nearest or not, shape (j, n)."""
+    def of_all_joints(self, progress: Progress = silent) -> BoneDistances:
+        """Compute the distances of all joints at every vertex, nearest or not."""
         if self.nearest_joints is None:
-            return self.joint
+            return self
         by_node = self.solver.paths(self.bones, self.sources, progress=progress)
-        joint = self.joint.copy()
-        reached = np.flatnonzero(self.fallback == REACHED)
-        joint[np.ix_(np.unique(self.bones.joint), reached)] = by_node[
-            :, self.graph.vertex_node[reached]
-        ]
+        columns = np.unique(self.bones.joint), self.rows.shape[1]
+        rows = with_columns(by_node[self.graph.vertex_node], *columns)
         if self.allowed is not None:
-            joint[~self.allowed.T] = np.inf
-        return joint
+            rows = chosen_entries(rows, self.allowed[rows_of_entries(rows), rows.indices])
+        lost = np.flatnonzero(self.fallback != REACHED)
+        rows = with_rows(rows, lost, self._rows_at(lost))
+        first = np.unique(self.graph.vertex_node, return_index=True)[1]
+        return replace(self, rows=rows[first], of_vertices=rows, nearest_joints=None)
 
 
 def bone_distances(
@@ -253,28 +278,30 @@ def bone_distances(
         allowed = check_allowed(graph, skeleton.deform, allowed)
         allowed = None if allowed.all() else allowed
     bones, sources = solver.place(skeleton, method, allowed, progress)
+    joints = len(skeleton.joints)
     if allowed is None:
         node = solver.targets
         by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
-        joint = per_joint(by_node, bones, len(skeleton.joints))
+        rows = with_columns(by_node, np.unique(bones.joint), joints)
     else:  # per vertex, as those at one place may differ
         node = graph.vertex_node
-        joint, nearest_joints = allowed_distances(
+        rows, nearest_joints = allowed_distances(
             solver, bones, sources, nearest_joints, within, allowed, progress
         )
-    fallback = why_not_reached(solver, bones, sources, joint, node, allowed)
+    fallback = why_not_reached(solver, bones, sources, rows, node, allowed)
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
-        joint[:, lost] = per_joint(least_of_joints(straight, bones), bones, len(joint))
-    of_vertices = None if allowed is None else joint
+        of_joints = from_dense(least_of_joints(straight, bones).T)
+        rows = with_rows(rows, lost, with_columns(of_joints, np.unique(bones.joint), joints))
+    of_vertices = None if allowed is None else rows
     if allowed is None:
         fallback = fallback[graph.vertex_node]
     else:
-        joint = joint[:, np.unique(node, return_index=True)[1]]
+        rows = rows[np.unique(node, return_index=True)[1]]
     distances = BoneDistances(
-        joint, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
+        rows, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )
     within = within if nearest_joints else np.inf
     own = distance_fingerprint(skeleton, method, allowed, nearest_joints, within, nearest)

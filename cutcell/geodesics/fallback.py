@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..bones.bones import Bones, Sources
 from ..geometry.segments import distance_to_segment
@@ -25,18 +26,17 @@ def why_not_reached(
     solver: BoneDistanceSolver,
     bones: Bones,
     sources: Sources,
-    distance: NDArray[np.float64],
+    rows: csr_array,
     node: NDArray[np.int32],
     allowed: NDArray[np.bool_] | None,
 ) -> NDArray[np.uint8]:
-    """Return why nodes (p,) with distances (j, p) of their joints need a fallback, (p,)."""
-    reached = np.isfinite(distance.min(axis=0))
-    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
+    """Return why nodes (p,) with distances (p, j) of their joints need a fallback, (p,)."""
+    fallback = np.where(np.diff(rows.indptr), REACHED, UNREACHED).astype(np.uint8)
     fallback[~solver.graph.connected[node]] = UNUSED
     lost = np.flatnonzero(fallback == UNREACHED)
     if allowed is not None and len(lost):
         by_any = solver.paths(bones, sources, 1, targets=node[lost])
-        fallback[lost[np.isfinite(by_any).any(axis=0)]] = NOT_ALLOWED
+        fallback[lost[np.diff(by_any.indptr) > 0]] = NOT_ALLOWED
     return fallback
 
 

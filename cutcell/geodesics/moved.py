@@ -6,9 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..animation.any_angle.theta_star import ON_BONE
 from ..bones.bones import Bones
+from ..geometry.sparse_rows import (
+    chosen_entries,
+    least,
+    lookup,
+    rows_of_entries,
+    with_columns,
+)
 from ..graph.fingerprint import APPROXIMATE
 from ..method import Method
 from ..rig import Skeleton
@@ -41,8 +49,9 @@ class MovedDistances:
         self._nearest_distance = distances.solver.nearest_distance(
             distances.bones, distances.sources
         )
-        self._farthest = np.where(np.isinf(distances.at_welded), 0, distances.at_welded).max(axis=0)
-        self._reached = np.zeros(distances.graph.first_point, np.bool_)
+        rows = distances.rows
+        self._farthest, self._reached = np.zeros(rows.shape[0]), np.zeros(rows.shape[0], np.bool_)
+        np.maximum.at(self._farthest, rows_of_entries(rows), rows.data)
         self._reached[distances.graph.vertex_node] = distances.fallback == REACHED
 
     def measure(self, skeleton: Skeleton) -> BoneDistances:
@@ -71,28 +80,39 @@ class MovedDistances:
         )
         return replace(
             distances,
-            at_welded=self._merged(joints, fresh),
+            rows=self._merged(joints, with_columns(fresh, joints, distances.rows.shape[1])),
             bones=bones,
             sources=distances.sources.replaced(is_moved, sources),
             skeleton=skeleton,
         ).identified(APPROXIMATE)
 
-    def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _merged(self, joints: NDArray[np.intp], fresh: csr_array) -> csr_array:
         """Return the distances of all joints, with those of some joints replaced."""
-        distances, merged = self._distances, self._distances.at_welded.copy()
-        before = merged[joints]
-        after = np.where(self._reached, fresh, before)
-        if distances.nearest_joints is not None:
-            after[(after > self._farthest) & np.isinf(before)] = np.inf
-        merged[joints] = after
-        if distances.nearest_joints is not None:
-            least = merged.min(axis=0)
-            lost = np.isinf(least)
-            after[:, lost] = before[:, lost]
-            least = np.maximum(least, ON_BONE / distances.graph.lattice.resolution)
-            after[(after > self._within * least) & self._reached] = np.inf
-            merged[joints] = after
-        return merged
+        before, reached = self._distances.rows, self._reached
+        row, of_fresh = rows_of_entries(before), rows_of_entries(fresh)
+        stays = ~np.isin(before.indices, joints) | ~reached[row]
+        is_valid = reached[of_fresh]
+        if self._distances.nearest_joints is not None:
+            is_new = np.isinf(lookup(before, of_fresh, fresh.indices))
+            is_valid &= ~is_new | (fresh.data <= self._farthest[of_fresh])
+        nearest = np.minimum(
+            least(chosen_entries(before, stays)), least(chosen_entries(fresh, is_valid))
+        )
+        stays |= np.isinf(nearest)[row]  # else nothing would be left
+        if self._distances.nearest_joints is not None:
+            nearest = np.maximum(nearest, ON_BONE / self._distances.graph.lattice.resolution)
+            is_valid &= fresh.data <= (self._within * nearest)[of_fresh]
+        data, indices, rows = (
+            np.concatenate([old[stays], new[is_valid]])
+            for old, new in (
+                (before.data, fresh.data),
+                (before.indices, fresh.indices),
+                (row, of_fresh),
+            )
+        )
+        order = np.lexsort((indices, rows))
+        start = np.searchsorted(rows[order], np.arange(before.shape[0] + 1))
+        return csr_array((data[order], indices[order], start), before.shape)
 
 
 def _carried(distances: BoneDistances, skeleton: Skeleton, method: Method) -> Bones | None:

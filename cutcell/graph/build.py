@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Unpack
 
+from ..checks import check_choice
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
-from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
 from ..runtime.progress import Progress, share_of, silent
 from ..runtime.threads import cancellable

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..method import DistanceOptions, GraphOptions, Method
+from ..method import STAGE_OPTIONS, Method
 from ..rig import Skeleton, TriangleMesh
 
 Fingerprint = Mapping[str, Any]
@@ -31,13 +31,16 @@ def data_fingerprint(*data: TriangleMesh | Skeleton) -> dict[str, Any]:
     }
 
 
+def option_fingerprint(method: Method, stage: str) -> dict[str, Any]:
+    """Return the values of the options that a stage follows."""
+    return {name: getattr(method, name) for name in STAGE_OPTIONS[stage]}
+
+
 def graph_fingerprint(
     mesh: TriangleMesh, method: Method, rays: str = "raster", winding: str = "exact"
 ) -> dict[str, Any]:
     """Return the fingerprint of the graph of a mesh by a method."""
-    options = {
-        name: getattr(method, name) for name in ("resolution", *GraphOptions.__annotations__)
-    }
+    options = option_fingerprint(method, "graph")
     return data_fingerprint(mesh) | options | {"rays": rays, "winding": winding}
 
 
@@ -50,7 +53,7 @@ def distance_fingerprint(
     nearest: int = 3,
 ) -> dict[str, Any]:
     """Return what distances depend on besides their graph, see `bone_distances`."""
-    options = {name: getattr(method, name) for name in DistanceOptions.__annotations__}
+    options = option_fingerprint(method, "distances")
     allowed = None if allowed is None or allowed.all() else allowed
     measured = dict(zip(AT_LEAST, (nearest_joints or np.inf, within), strict=True))
     own = options | measured | {"nearest": nearest, "permitted joints": _digest(allowed)}

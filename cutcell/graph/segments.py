@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled
+from ..runtime.compiled import no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 from .rays import RayHits, first_at_least, points_on_rays
@@ -172,19 +172,18 @@ def divide_rays(
 
     `beyond_hits`, shape (R * R, 2): as of `RayWindingNumbers`.
     """
-    return Segments(
-        axis, resolution, *_divide(hits.start, hits.position, resolution, rays, beyond_hits)
-    )
+    count = int(np.diff(hits.start)[rays].sum()) + len(rays) * (resolution + 1)
+    types = np.int32, np.int32, np.int32, np.bool_, np.bool_, np.float64
+    out = [np.empty(count, dtype) for dtype in types]
+    count = _divide(hits.start, hits.position, resolution, rays, beyond_hits, *out)
+    return Segments(axis, resolution, *(values[:count] for values in out))
 
 
-@compiled
-def _divide(start, position, resolution, rays, beyond_hits):
-    count = 0
-    for r in rays:
-        count += start[r + 1] - start[r] + resolution + 1
-    ray, gap = np.empty(count, np.int32), np.empty(count, np.int32)
-    number, middle = np.empty(count, np.int32), np.empty(count)
-    from_hit, to_hit = np.empty(count, np.bool_), np.empty(count, np.bool_)
+@no_refcount
+def _divide(
+    start, position, resolution, rays, beyond_hits, ray, gap, number, from_hit, to_hit, middle
+):
+    """Fill in the arrays of `Segments`; return how many there are."""
     s = 0
     for r in rays:
         begin, end = start[r], start[r + 1]
@@ -204,4 +203,4 @@ def _divide(start, position, resolution, rays, beyond_hits):
                 low = high
                 s += 1
             first = last
-    return ray[:s], gap[:s], number[:s], from_hit[:s], to_hit[:s], middle[:s]
+    return s

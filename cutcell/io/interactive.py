@@ -11,8 +11,8 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
 
+from ..checks import check_number
 from ..errors import MissingLibraryError
-from ..rig.checks import check_number
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.notebook import is_notebook
 from ..runtime.writing import write_all

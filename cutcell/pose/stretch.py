@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..graph import MESH, CutCellGraph
 from ..rig import Skeleton
@@ -80,7 +81,7 @@ class TurnedEdges(NamedTuple):
 
 
 def measure_stretch(
-    graph: CutCellGraph, skeleton: Skeleton, weights: NDArray[np.float64]
+    graph: CutCellGraph, skeleton: Skeleton, weights: NDArray[np.float64] | csr_array
 ) -> Stretch:
     """Turn each joint that moves a part of a surface, and measure how much of it stretches.
 
@@ -90,7 +91,7 @@ def measure_stretch(
         Of the mesh.
     skeleton : Skeleton
         In the file's units.
-    weights : array, shape (n, j), float64
+    weights : array or csr_array, shape (n, j), float64
         Rows sum to one. Edges at vertices whose row is all zero are left out.
 
     Returns
@@ -102,7 +103,7 @@ def measure_stretch(
     nodes, local = _renumbered(edges, graph.first_point)
     vertex = np.empty(graph.first_point, np.intp)
     vertex[graph.vertex_node[::-1]] = np.arange(len(graph.vertex_node))[::-1]  # the first of each
-    shares = weights[vertex[nodes]]
+    shares = csr_array(weights[vertex[nodes]]).toarray()
     # Vertices without weight are another finding.
     is_weighted = np.asarray(shares.any(axis=1))[local].all(axis=1)
     edges, local, amount = edges[is_weighted], local[is_weighted], amount[is_weighted]

@@ -8,8 +8,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign
 from ..errors import ParameterError
-from .checks import assign
 from .transforms import composed, relative
 
 

@@ -7,8 +7,8 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import shown
 from ..errors import CutcellError, MeshError, SkeletonError
-from .checks import shown
 from .mesh import TriangleMesh
 from .rig import Rig
 from .skeleton import Skeleton

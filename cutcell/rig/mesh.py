@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign, check_choice
 from ..errors import MeshError
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..runtime.repr import Summarized
-from .checks import as_array, assign, check_choice, check_finite, frozen
+from .checks import as_array, check_finite, frozen
 
 COUNTS = ("welded", "vertices")
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
 from ..runtime.repr import Summarized
-from .checks import as_array, assign, frozen
+from .checks import as_array, frozen
 from .clip import Clip
 from .mesh import TriangleMesh
 from .skeleton import Skeleton

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import assign, shown
 from ..errors import SkeletonError
 from ..runtime.display import listed
 from ..runtime.repr import Summarized
-from .checks import as_array, assign, check_finite, frozen, shown
+from .checks import as_array, check_finite, frozen
 from .names import is_neutral
 
 LONG_CYCLE = 10
@@ -174,18 +176,13 @@ def _joint_names(names: Any, count: int) -> tuple[str, ...]:
 
 
 def _check_acyclic(parents: NDArray, names: tuple[str, ...]) -> None:
-    above = parents.copy()
-    for _ in range(len(parents).bit_length() + 1):  # each time twice as far
-        climbing = above >= 0
-        if not climbing.any():
-            return
-        above[climbing] = above[above[climbing]]
-    joint = int(np.flatnonzero(above >= 0)[0])
-    for _ in range(len(parents)):
-        joint = int(parents[joint])  # walk until surely on the cycle itself
-    cycle = [joint, int(parents[joint])]
-    while cycle[-1] != joint:
-        cycle.append(int(parents[cycle[-1]]))
+    parent_of = {j: [parent] if parent >= 0 else [] for j, parent in enumerate(parents.tolist())}
+    try:
+        TopologicalSorter(parent_of).prepare()
+    except CycleError as error:
+        cycle = error.args[1][::-1]  # from each joint to its parent
+    else:
+        return
     labels = [f'"{names[j]}"' for j in cycle]
     if len(labels) > LONG_CYCLE:
         labels[LONG_CYCLE // 2 : -LONG_CYCLE // 2] = ["..."]

@@ -6,11 +6,11 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
+from ..checks import check_choice
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
 from ..graph.fingerprint import data_fingerprint, require_same
 from ..rig import Skeleton
-from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
 from ..runtime.progress import Progress, silent
 from . import biped, hand, quadruped

@@ -8,18 +8,18 @@ from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..animation.falloff.adjustments import Adjustments
 from ..animation.falloff.pipeline import RigFalloff
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
-from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..runtime.progress import Progress, Tell, share_of, silent
-from ..runtime.threads import in_threads, parts, threads
+from ..rig.rows import rows_of_entries, scaled, single, with_data, with_rows
+from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
-from .prune import A_PART, prune
+from .prune import prune
 
 
 def skinning_weights(
@@ -78,14 +78,15 @@ def skinning_weights(
     if allowed is not None:
         deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
         allowed = check_allowed(distances.graph, deform, allowed)
-    return last_of(weight_steps(distances, method, allowed, adjustments, progress=progress))
+    steps = weight_steps(distances, method, allowed, adjustments, progress=progress)
+    return last_of(steps).toarray()
 
 
 class WeightStep(NamedTuple):
     """A step from distances to weights, and the weights after it: (n, j), or (k, j) if `welded`."""
 
     name: str
-    weights: NDArray[np.float64]
+    weights: csr_array
     welded: bool = False
 
 
@@ -115,8 +116,8 @@ def weight_steps(
     def report(done: float) -> None:
         progress("weights", done)
 
-    def limited(weights: NDArray[np.float64]) -> NDArray[np.float64]:
-        most, threshold, part = method.max_influences, method.threshold, share_of(report, 0.8, 0.9)
+    def limited(weights: csr_array) -> csr_array:
+        most, threshold, part = method.max_influences, method.threshold, share_of(report, 0.8, 1)
         return prune(weights, most, threshold, priority, part, scaled)
 
     if method.falloff == "paper":
@@ -127,17 +128,17 @@ def weight_steps(
         for name, weights in falloff.steps(report):
             yield WeightStep(name, weights, welded=True)
     if allowed is None:
-        weights = of_vertices(graph, limited(weights), share_of(report, 0.9, 1))
+        weights = limited(weights)[graph.vertex_node]
     else:
         if method.falloff != "paper":
-            weights = of_vertices(graph, weights)
+            weights = weights[graph.vertex_node]
         weights = permit(weights, distances, allowed)
         yield WeightStep("storable", weights)
         weights = limited(weights)
     yield WeightStep("normalise", weights)
 
 
-def last_of(steps: Iterator[WeightStep]) -> NDArray[np.float64]:
+def last_of(steps: Iterator[WeightStep]) -> csr_array:
     """Run all steps; return the weights after the last."""
     return deque(steps, maxlen=1).pop().weights
 
@@ -147,7 +148,7 @@ def equation_1(
     method: Method,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Apply the paper's falloff to the distances, see `paper_kernel`.
 
     Shapes: allowed (n, j); returns (n, j) with `allowed`, else (k, j) of welded vertices.
@@ -156,44 +157,30 @@ def equation_1(
     distance = distances.at_welded if allowed is None else distances.joint
     if adjustments is not None:
         distance = distance / adjustments.gain[:, None]
-    return paper_kernel(distance, distances.graph.lattice.diagonal, method.alpha)
+    return csr_array(paper_kernel(distance, distances.graph.lattice.diagonal, method.alpha))
 
 
-def permit(
-    weights: NDArray[np.float64], distances: BoneDistances, allowed: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def permit(weights: csr_array, distances: BoneDistances, allowed: NDArray[np.bool_]) -> csr_array:
     """Drop what a vertex may not follow; one left with nothing follows its nearest joint.
 
     Shapes: weights, allowed (n, j); returns (n, j).
     """
-    permitted = np.where(allowed, weights, 0.0)
+    is_allowed = allowed[rows_of_entries(weights), weights.indices]
+    permitted = with_data(weights, weights.data * is_allowed)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
-    distance = np.where(allowed[lost].T, distances.joint[:, lost], np.inf)
+    distance = np.where(allowed[lost].T, distances.at(slice(None), lost), np.inf)
     if np.isinf(distance.min(axis=0)).any():
         raise WeightsError("no joint that a vertex may follow was measured; measure by `allowed`")
-    permitted[lost, distance.argmin(axis=0)] = 1
-    return permitted / permitted.sum(axis=1, keepdims=True)
-
-
-def of_vertices(
-    graph: CutCellGraph, welded: NDArray[np.float64], report: Tell = lambda done: None
-) -> NDArray[np.float64]:
-    """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
-    weights = np.empty((len(graph.vertex_node), welded.shape[1]))
-    in_threads(
-        lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
-        parts(len(weights), threads() + weights.size // A_PART),
-        report,
-    )
-    return weights
+    permitted = with_rows(permitted, lost, single(distance.argmin(axis=0), allowed.shape[1]))
+    return scaled(permitted, 1 / permitted.sum(axis=1))
 
 
 def keep_strongest(
     distances: BoneDistances,
-    weights: NDArray[np.float64],
+    weights: csr_array,
     max_influences: int | None = ANIMATION.max_influences,
     threshold: float = ANIMATION.threshold,
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Keep the largest weights of each vertex: the last step of `skinning_weights`.
 
     Weights of many influences can be kept, and pruned again as often as that is changed.
@@ -202,14 +189,14 @@ def keep_strongest(
     ----------
     distances : BoneDistances
         Distances that the weights were computed from.
-    weights : array, shape (n, j)
+    weights : csr_array, shape (n, j)
         Rows sum to one.
     max_influences, threshold
         See `Method`.
 
     Returns
     -------
-    array, shape (n, j), float64
+    csr_array, shape (n, j)
         Rows sum to one.
 
     Raises

@@ -50,7 +50,9 @@ def data() -> dict[str, np.ndarray]:
     ).T
     graph = cutcell.build_graph(cutcell.TriangleMesh(vertices, faces), resolution=RESOLUTION)
     distances = cutcell.bone_distances(graph, skeleton)
-    through = graph.lattice.size * grouped(distances.all_joints(), group, np.minimum.reduce).T
+    through = (
+        graph.lattice.size * grouped(distances.of_all_joints().joint, group, np.minimum.reduce).T
+    )
     poses = [
         {names.index("upper_arm.L"): axis_rotation("z", angle)} for angle in np.linspace(0, 80, 9)
     ]

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
+from cutcell.checks import check_number
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell.geometry.triangles import label_components
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_number
 
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by

@@ -8,6 +8,7 @@ from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell.isolated.run import WorkFailedError
 from cutcell.method import Method
@@ -95,7 +96,8 @@ def _finish(
         )
     full /= full.sum(axis=1, keepdims=True)
     priority = np.lexsort(rig.skeleton.joints.T[::-1])
-    return prune(full, method.max_influences, method.threshold, priority), warnings
+    few = prune(csr_array(full), method.max_influences, method.threshold, priority)
+    return few.toarray(), warnings
 
 
 def _nearest(rig: Rig, body: Body, vertices: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -14,16 +14,16 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from cutcell.bones.bones import per_joint
+from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_path
 from cutcell.geodesics.fallback import why_not_reached
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
+from cutcell.geometry.sparse_rows import with_columns
 from cutcell.graph import CutCellGraph, build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress
 
 from .body import Body
@@ -278,6 +278,6 @@ def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int)
     """Compute the distances of given bones to each vertex along a graph, without a fallback."""
     solver = BoneDistanceSolver(graph)
     sources = solver.sources(bones, samples)
-    joint = per_joint(solver.paths(bones, sources), bones, joints)
-    why = why_not_reached(solver, bones, sources, joint, solver.targets, None)
-    return BoneDistances(joint, None, None, bones, sources, why[graph.vertex_node], solver)
+    rows = with_columns(solver.paths(bones, sources), np.unique(bones.joint), joints)
+    why = why_not_reached(solver, bones, sources, rows, solver.targets, None)
+    return BoneDistances(rows, None, None, bones, sources, why[graph.vertex_node], solver)

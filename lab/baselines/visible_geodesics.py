@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from cutcell.checks import check_number
 from cutcell.geometry.edges import find_edges
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_number
 from cutcell.runtime.progress import Progress, silent
 from cutcell.weights.paper_kernel import paper_kernel
 

@@ -68,8 +68,8 @@ def compare(
     with artist weights turn; --turned all turns the others, too. If a method fails on a rig, the
     table shows the reason.
     """
+    from cutcell.checks import check_choice
     from cutcell.io import load
-    from cutcell.rig.checks import check_choice
 
     from ..baselines.compare import compare as measure
     from ..baselines.compare import comparison_markdown

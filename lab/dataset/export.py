@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 
+from cutcell.checks import check_choice
 from cutcell.errors import FileError, MissingLibraryError
 from cutcell.geometry.segments import distance_to_segment
 from cutcell.geometry.triangles import face_edges
 from cutcell.io.formats.rignet import word_names
 from cutcell.io.obj import write_obj
 from cutcell.rig import TriangleMesh
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.writing import replacing, write_all
 
 from .audit.points import mesh_normals, sample_surface

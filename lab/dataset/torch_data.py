@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_choice, check_integer
 from cutcell.errors import FileError, MissingLibraryError
-from cutcell.rig.checks import check_choice, check_integer
 
 from .audit.points import SurfacePoints, sample_surface
 from .read.store import Store, read_entry

@@ -13,6 +13,7 @@ from cutcell.diagnosis.subject import Subject
 from cutcell.geodesics import BoneDistances
 from cutcell.geodesics.fallback import REACHED
 from cutcell.geometry.segments import closest_on_segment
+from cutcell.geometry.sparse_rows import to_dense
 from cutcell.graph import INTERIOR
 from cutcell.rig import Rig
 
@@ -93,7 +94,8 @@ class Measured:
         targets, number = np.unique(self.subject.welded[samples], return_inverse=True)
         by_node = distances.solver.paths(
             bones.subset(chosen), distances.sources.subset(chosen), targets=targets.astype(np.int32)
-        )[:, number]
+        )
+        by_node = to_dense(by_node[number]).T
         through = dict(zip(np.unique(bones.joint[chosen]).tolist(), by_node, strict=True))
         nearest = distances.at(slice(None), samples).min(axis=0)
         points = self.subject.points[self.subject.welded[samples]]

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from cutcell.checks import check_number
 from cutcell.geodesics import BoneDistances
 from cutcell.geometry.triangles import face_edges
 from cutcell.graph import CutCellGraph
 from cutcell.graph.fingerprint import data_fingerprint, require_same
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_number
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 

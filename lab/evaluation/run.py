@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import one_line
 from cutcell.errors import Cancelled, CutcellError, FileError, WeightsError
 from cutcell.io import load
 from cutcell.io.files import naming
 from cutcell.io.weights import normalised
 from cutcell.rig import Rig
-from cutcell.rig.checks import one_line
 
 from ..dataset.read.sources import Source, read_source
 from ..dataset.read.store import read_entry

@@ -2,10 +2,10 @@
 
 from cutcell.rig.mesh import COUNTS, vertex_shares
 
-from .clips import ClipError, clip_error, motion_error
+from .clips import ClipError, clip_error
 from .crosstalk import Crosstalk, crosstalk, find_gaps
 from .definitions import DEFINITIONS, Definition, errors_by_definition
-from .deformation import TURNED, DeformationError, Turn, Turned, deformation_error, scene_error
+from .deformation import TURNED, DeformationError, Turn, Turned, deformation_error
 from .poses import PoseError, pose_error
 from .table import METRICS, Measured, Metric
 from .weight_error import precision_recall, unweighted, weight_l1
@@ -29,10 +29,8 @@ __all__ = [
     "deformation_error",
     "errors_by_definition",
     "find_gaps",
-    "motion_error",
     "pose_error",
     "precision_recall",
-    "scene_error",
     "unweighted",
     "vertex_shares",
     "weight_l1",

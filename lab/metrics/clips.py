@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,14 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from cutcell.pose import linear_blend_skinning
 from cutcell.rig import Clip, Rig, TriangleMesh
 from cutcell.rig.mesh import vertex_shares
-from cutcell.runtime.progress import Progress, silent
 
 from .deformation import CM2, checked_fit, longest_side
 
 FRAMES = 24
 """Frames of each clip that are compared, evenly spread, at most."""
-NEARLY_ALL = 0.995
-"""Part of the vertices that `motion_error` calls nearly all."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +75,7 @@ def clip_error(
     share = vertex_shares(rig.mesh, count)
     errors = []
     for clip in rig.clips:
-        times = _compared_times(clip)
+        times = compared_times(clip)
         largest, total = np.zeros(len(weights)), 0.0
         for time in times:
             transforms = clip.sample(time)
@@ -103,40 +99,7 @@ def squared_distances(
     return (difference * difference).sum(axis=1) / longest_side(mesh) ** 2
 
 
-def motion_error(
-    clip: Clip,
-    lengths_in: Callable[[NDArray[np.float64]], NDArray[np.floating]],
-    progress: Progress = silent,
-) -> tuple[float, float, float]:
-    """Return the distances between two sets of weights while a clip plays.
-
-    Parameters
-    ----------
-    clip : Clip
-    lengths_in : callable
-        Takes a pose (j, 4, 4) of the clip and returns the distance of each vertex, shape (n,).
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    rms : float
-        Root mean square over frames and vertices.
-    greatest : float
-    most : float
-        What nearly all vertices stay below, in every frame.
-    """
-    times = _compared_times(clip)
-    squares = greatest = most = 0.0
-    for done, time in enumerate(times):
-        progress("error", done / len(times))
-        lengths = lengths_in(clip.sample(time))
-        squares += float(np.square(lengths).mean()) / len(times)
-        greatest = max(greatest, float(lengths.max()))
-        most = max(most, float(np.quantile(lengths, NEARLY_ALL)))
-    return float(np.sqrt(squares)), greatest, most
-
-
-def _compared_times(clip: Clip) -> NDArray[np.float64]:
+def compared_times(clip: Clip) -> NDArray[np.float64]:
+    """Return the times of a clip's compared frames, shape (f,)."""
     frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
     return clip.times[frames[frames >= 0]]

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
+from cutcell.checks import check_integer, check_number
 from cutcell.errors import ParameterError
 from cutcell.graph import CutCellGraph
-from cutcell.rig.checks import check_integer, check_number
 
 from .weight_error import checked_weights
 

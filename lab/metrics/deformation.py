@@ -8,9 +8,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.rig.checks import check_choice, check_number
 from cutcell.rig.mesh import vertex_shares
 from cutcell.runtime.progress import Progress, silent
 
@@ -223,31 +223,6 @@ def longest_side(mesh: TriangleMesh) -> float:
     """Return the longest side of the bounding box, in the file's units."""
     low, high = mesh.bounds
     return float((high - low).max())
-
-
-def scene_error(
-    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
-) -> DeformationError:
-    """Compute the deformation error with turns about the axes of the scene, where y is up.
-
-    Parameters
-    ----------
-    rig : Rig
-    weights, reference : array_like, shape (n, j)
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    DeformationError
-    """
-
-    def placed(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        return points @ rig.world[:3, :3].T + rig.world[:3, 3]
-
-    mesh, bones = TriangleMesh(placed(rig.mesh.vertices), rig.mesh.faces), rig.skeleton
-    skeleton = Skeleton(placed(bones.joints), bones.parents, bones.names, bones.deform)
-    return deformation_error((mesh, skeleton), weights, reference, progress=progress)
 
 
 def _checked_joints(joints: Turned | ArrayLike, skeleton: Skeleton) -> NDArray[np.intp]:

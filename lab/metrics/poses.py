@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from cutcell.checks import check_integer, check_number
 from cutcell.pose import forward_kinematics
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.checks import check_integer, check_number
 from cutcell.rig.mesh import vertex_shares
 
 from .clips import squared_distances

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_number
 from cutcell.errors import ParameterError, WeightsError
-from cutcell.rig.checks import check_number
 
 THRESHOLD = 0.001
 """A joint moves a vertex if its weight is greater."""

@@ -15,9 +15,9 @@ import platformdirs
 from numpy.typing import NDArray
 
 from cutcell.binding import bind
+from cutcell.checks import check_choice
 from cutcell.errors import CutcellError, ParameterError, WeightsError
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.sources import PACKAGE, source_digest
 from cutcell.runtime.writing import write_all

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from cutcell.rig.checks import check_choice, check_flag, check_integer
+from cutcell.checks import check_choice, check_flag, check_integer
 
 HeadName = Literal["rignet", "unirig", "puppeteer"]
 SizeName = Literal["tiny", "small", "full"]

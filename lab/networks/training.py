@@ -14,8 +14,8 @@ import numpy as np
 import torch
 from torch import nn
 
+from cutcell.checks import check_integer
 from cutcell.errors import FileError, ParameterError
-from cutcell.rig.checks import check_integer
 from cutcell.runtime.writing import reason, write_all
 
 from .augmentation import drawn

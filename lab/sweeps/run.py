@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 
 from cutcell.binding import Binding, bind
 from cutcell.binding.stages import bind_edited
+from cutcell.checks import check_choice
 from cutcell.editing import Edits
 from cutcell.errors import Cancelled, CutcellError
 from cutcell.geodesics.fallback import REACHED
 from cutcell.graph.fingerprint import differences, distance_fingerprint, graph_fingerprint
 from cutcell.method import ANIMATION, Method, MethodName, method_of
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
 from cutcell.weights.warm_up import warm_up
@@ -274,4 +274,4 @@ def measure_setting(
         The reference does not fit the rig.
     """
     measured = Measured(rig, binding.weights, reference, binding, progress=progress)
-    return SweepPoint(value, **measured.values(MEASURES))
+    return SweepPoint(value, "", **measured.values(MEASURES))

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import panel_material_ui as pmui
 import pytest
+from scipy.sparse import csr_array
 
 import cutcell
 from cutcell import Edits, Filled, JointEdit, Layer, Locked, Mask
@@ -102,7 +103,7 @@ def test_a_warning_about_new_weights_leads_to_them_and_not_to_those_of_the_file(
     warning = LocatedWarning("it stretches", "stretched-surface")
     vertices, joints = bound.state.binding.weights.shape
     weights = np.eye(joints)[np.arange(vertices) % joints]
-    bound.state.binding = replace(bound.state.binding, weights=weights, warnings=(warning,))
+    bound.state.binding = replace(bound.state.binding, rows=csr_array(weights), warnings=(warning,))
     link = warnings(bound.state)[-1]
     assert link.label == "Show: surface that stretches"
     go_to(bound, link.code)

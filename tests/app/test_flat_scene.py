@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from cutcell_app.document.address import from_query, to_query
 from cutcell_app.document.look import pick_vertex
@@ -105,7 +106,7 @@ def test_a_vertex_that_nothing_moves_has_no_plot(bound):
     pick_vertex(bound, 7)
     binding = bound.state.binding
     weights = binding.weights * (np.arange(len(binding.weights)) != 7)[:, None]
-    bound.state.binding = replace(binding, weights=weights)
+    bound.state.binding = replace(binding, rows=csr_array(weights))
     assert plot_of(bound.state, "falloff") is None
 
 

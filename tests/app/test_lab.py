@@ -167,7 +167,7 @@ def test_curves_have_a_point_for_each_value(bound, loop):
     swept(bound, loop, "connectivity", "6,26,1,any")
     ((plot),) = plots(Reader(bound))
     points, measured = points_of(plot), [p for p in bound.state.swept.values() if not p.failed]
-    assert [point["title"] for point in points] == ["6 axes", "26", "Any angle"]
+    assert [point["title"] for point in points] == ["6 axes", "26 diagonals", "Any angle"]
     assert [point["text"] for point in points] == [number(one.l1) for one in measured]
     assert [point["chosen"] for point in points] == [False, False, True]
     assert [point["at"][0] for point in points] == [0, 0.5, 1]

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.diagnosis import SEVERITIES, Finding
-from cutcell.diagnosis.finding import TITLES
+from cutcell.diagnosis import SEVERITIES, TITLES, Finding
 from cutcell.diagnosis.leaks import moves_own_part
 from cutcell.editing import Attached, Edits, Filled, FromFile, JointEdit
 from cutcell.editing.layers.contents import Content

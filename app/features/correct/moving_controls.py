@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from cutcell.checks import shown
 from cutcell.editing import JointEdit
 from cutcell.errors import ParameterError
 from cutcell.rig import Rig
-from cutcell.rig.checks import shown
 
 from ...document.session import Session
 from ...document.state import State

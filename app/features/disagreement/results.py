@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from cutcell.diagnosis import Finding
 from cutcell.diagnosis.finding import Pose
@@ -98,8 +99,8 @@ def take(session: Session, name: str, opacity: float = 1.0) -> None:
     total = rows.sum(axis=1)
     vertices, rows = region.vertices[total > 0], rows[total > 0] / total[total > 0, None]
     rows = opacity * rows + (1 - opacity) * state.binding.weights[vertices]
-    few = keep_strongest(state.binding.distances, rows, state.max_influences)
-    put_rows(session, vertices, few)
+    few = keep_strongest(state.binding.distances, csr_array(rows), state.max_influences)
+    put_rows(session, vertices, few.toarray())
 
 
 def settle(session: Session) -> None:

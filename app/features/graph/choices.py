@@ -7,9 +7,7 @@ from typing import Any
 
 import param
 
-from cutcell.geodesics import LEAVES
-
-from ...document.method import default
+from ...document.method import GRAPH, choices_of
 from ..panel import Panel
 
 READABLE = 40
@@ -19,7 +17,6 @@ MODULES = {"open3d": "open3d", "embree": "embreex", "fast": "igl"}
 """Libraries that also cast rays or compute winding numbers, and the module of each."""
 INSTALLED = [name for name, module in MODULES.items() if find_spec(module)]
 
-LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 CASTERS = {"cutcell": "raster", "Open3D": "open3d", "Embree": "embree"}
 WINDINGS = {"cutcell, exact": "exact", "libigl, fast": "fast"}
 AXES = {"X": "x", "Y": "y", "Z": "z"}
@@ -40,30 +37,13 @@ PANEL = Panel(
 )
 
 
-class Choices(param.Parameterized):
+class Choices(choices_of(GRAPH)):  # type: ignore[misc]
     """How the graph is built, and what of it is seen."""
 
     graph_resolution = param.Integer(
         READABLE, bounds=(0, 512), doc="Of the graph that is shown; 0 for the one of the weights."
     )
     easy_graph: Any = param.Parameter(None, doc="A graph to show, easier to read; or None.")
-    resolution = param.Integer(default("resolution"), doc="Lattice cells along the longest side.")
-    connectivity: param.Selector[int | str] = param.Selector(
-        default=default("connectivity"),
-        objects={"6 axes": 6, "26 diagonals": 26, "Any angle": "any"},
-    )
-    winding_threshold = param.Number(
-        default("winding_threshold"),
-        bounds=(0, 1),
-        inclusive_bounds=(False, False),
-        softbounds=(0.01, 0.99),
-        step=0.01,
-        label="Winding threshold τ",
-    )
-    orient = param.Boolean(default("orient"), label="Flip inverted faces")
-    leaf: param.Selector[str] = param.Selector(
-        default=default("leaf"), objects={LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}
-    )
 
     body = param.Boolean(True, label="Surface")
     mesh_edges = param.Boolean(True, label="Mesh edges")

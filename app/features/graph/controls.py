@@ -8,6 +8,7 @@ import panel_material_ui as pmui
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell_viewers.palette import to_hex
 
+from ...document.method import GRAPH
 from ...document.state import State
 from ...widgets import controls as ui
 from ..character import theme_of
@@ -16,6 +17,8 @@ from ..weights.recovery import CHAIN
 from .choices import LAYERS, READABLE
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
+PLACED = ("resolution", "winding_threshold", "orient", "connectivity")
+"""Options whose controls have a place of their own; all others follow them."""
 SEARCHED = (
     "Interior edges only carry the search: paths run straight along lines of sight. Click the "
     "body to see them."
@@ -131,13 +134,11 @@ CONTROLS = ui.column(
             end=lambda s: max(160, s.resolution),
             step=8,
         ),
-        ui.slider("winding_threshold"),
-        ui.switch(
-            "orient", margin=(4, 0, 2, 0), visible=lambda s: not s.orient or _has_inverted_faces(s)
-        ),
-        ui.choice("connectivity", "Paths inside run along", above=4),
+        ui.option("winding_threshold"),
+        ui.option("orient", visible=lambda s: not s.orient or _has_inverted_faces(s)),
+        ui.option("connectivity"),
         ui.caption(SEARCHED, visible=lambda s: s.connectivity == "any"),
-        ui.choice("leaf", "Leaf bones", above=4),
+        [ui.option(name) for name in GRAPH if name not in PLACED],
         ui.button("Recompute", lambda session: session.engine.retry(*CHAIN), visible=_is_idle),
     ),
 )

@@ -1,20 +1,20 @@
 """Settings that were measured, as rows of a table and as points of curves."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from cutcell.method import OPTIONS
+
 from ...document.state import State
 from ..distance.choices import MEASURES as DISTANCES
-from ..graph.choices import LEAF_TITLES
-from ..weights.choices import FALLOFF_TITLES
 from .choices import MEASURES
 from .results import choices_of
 
 WORDS = {
-    "connectivity": {"6": "6 axes", "26": "26", "any": "Any angle"},
-    "leaf": LEAF_TITLES,
-    "falloff": FALLOFF_TITLES,
+    name: {str(value): title for title, value in option.values.items()}
+    for name, option in OPTIONS.items()
+    if isinstance(option.values, Mapping)
 }
 """Titles of values that are no numbers."""
 

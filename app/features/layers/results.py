@@ -81,7 +81,7 @@ def recompute(
         return bind_layer(rig, base, reach, layer, report, scaled=False)
 
     binding = cancellable(work, progress, "weights")
-    return Recomputed(binding.distances, csr_array(binding.weights))
+    return Recomputed(binding.distances, binding.rows)
 
 
 def layered(
@@ -91,15 +91,15 @@ def layered(
 
     Weights of layers that are not given are those of the base.
     """
-    base, few = binding.weights, binding.method
+    few = binding.method
 
     def computed(layer: Layer) -> NDArray[np.float64]:
         result = recomputed.get(_key(layer))
         if result is None:
-            return base
+            return binding.weights
         assert isinstance(layer.content, Computed)
         method = layer.content.method(few)
         options = method.max_influences, method.threshold
-        return keep_strongest(result.distances, result.weights.toarray(), *options)
+        return keep_strongest(result.distances, result.weights, *options).toarray()
 
     return with_layers(rig, binding, edits.stack(), computed)

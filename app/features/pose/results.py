@@ -4,13 +4,13 @@ from typing import Any
 
 from cutcell.errors import CutcellError
 from cutcell.pose import axis_rotation
-from cutcell_lab.metrics import motion_error, scene_error
 from cutcell_viewers.error_scene import gap_between
 from cutcell_viewers.pose_scene import clip_in_scene
 
 from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
+from .errors import motion_error, scene_error
 from .materials import MATERIALS
 from .scene import angles_of, clip_of, clip_part, has_rival, rotation_of
 
@@ -123,7 +123,7 @@ RESULTS = (
         _motion,
         lambda rig, binding, blending, motion, clip, swung, progress: motion_error(
             clip_in_scene(rig, swung),
-            gap_between(rig, binding.weights, rig.weights, blending).lengths,
+            gap_between(rig, binding.weights, rig.weights, blending),
             progress,
         ),
         wanted=lambda state: state.panel == "pose" and state.heat,

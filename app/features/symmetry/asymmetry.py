@@ -15,9 +15,10 @@ from cutcell.editing.symmetry import (
     reflected,
 )
 from cutcell.errors import MeshError
-from cutcell.geometry.triangles import closest_on_triangle
 from cutcell.rig import Rig, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
+
+from .closest import closest_on_triangle
 
 NEAR = 0.02
 """Bounding-box diagonals: skin that is farther from the mirrored surface has no mirror image."""

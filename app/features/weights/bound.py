@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numpy as np
 from scipy.sparse import csr_array
 
 import cutcell
@@ -62,5 +61,5 @@ def bind_wide(
 
     wide = cancellable(work, progress, "distances")
     seconds = {**wide.seconds, "graph": graph_seconds.get(graph, 0.0)}
-    binding = replace(wide, weights=np.empty((0, len(rig.skeleton.names))), seconds=seconds)
-    return Bound(binding, Influences(falloff, csr_array(wide.weights)))
+    binding = replace(wide, rows=csr_array((0, len(rig.skeleton.names))), seconds=seconds)
+    return Bound(binding, Influences(falloff, wide.rows))

@@ -6,17 +6,13 @@ from typing import Any
 
 import param
 
-from cutcell.method import FALLOFFS
-
-from ...document.method import default
+from ...document.method import WEIGHTS, choices_of
 from ..panel import Panel
 
 MOST = 8
 """Influences that a vertex is measured for, and the most that can be chosen."""
 
 SHOWN = ("bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry")
-
-FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 
 PANEL = Panel(
     "Weights",
@@ -25,7 +21,7 @@ PANEL = Panel(
 )
 
 
-class Choices(param.Parameterized):
+class Choices(choices_of(WEIGHTS, max_influences=MOST)):  # type: ignore[misc]
     """Which weights are seen, and how they fall with distance."""
 
     weights_shown: param.Selector[str] = param.Selector(default="mix", objects=list(SHOWN))
@@ -54,16 +50,3 @@ class Choices(param.Parameterized):
     explanation: Any = param.Parameter(
         None, doc="What `cutcell.explain` returns for the chosen vertex, or None so far."
     )
-
-    falloff: param.Selector[str] = param.Selector(
-        default=default("falloff"),
-        objects={FALLOFF_TITLES.get(name, name.capitalize()): name for name in FALLOFFS},
-    )
-    alpha = param.Number(default("alpha"), bounds=(0, 1), step=0.01, label="Smoothness α")
-    max_influences = param.Integer(
-        default("max_influences"), bounds=(1, MOST), label="Max influences"
-    )
-    threshold = param.Number(
-        default("threshold"), bounds=(0, 1), softbounds=(0, 0.3), step=0.005,
-        label="Ignore weights below",
-    )  # fmt: skip

@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
-import panel_material_ui as pmui
 
+from ...document.method import WEIGHTS
 from ...document.state import State
 from ...widgets import controls as ui
 from ..brush.controls import BRUSH
@@ -79,9 +79,8 @@ CONTROLS = ui.column(
     ui.folded(
         "Falloff",
         ui.choice("falloff"),
-        ui.slider("alpha", visible=lambda s: s.falloff == "paper"),
-        ui.slider("max_influences", pmui.IntSlider),
-        ui.slider("threshold"),
+        ui.option("alpha", visible=lambda s: s.falloff == "paper"),
+        [ui.option(name) for name in WEIGHTS if name not in ("falloff", "alpha")],
     ),
     COMPONENTS,
     EDITS,

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
@@ -114,7 +113,7 @@ def _influences(
     adjustments = adjustments_of(rig, distances.graph, reach)
     progress("weights", 0.0)
     steps = weight_steps(distances, wide, rig.allowed, adjustments, progress=progress, scaled=False)
-    return Influences(options, csr_array(last_of(steps)))
+    return Influences(options, last_of(steps))
 
 
 def _recomputed_inputs(state: State, key: str) -> tuple[Any, ...] | None:
@@ -151,13 +150,11 @@ def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
     binding, key = bound.binding, tuple(few.values())
     strongest = influences.strongest.get(key)
     if strongest is None:
-        wide = influences.weights.toarray()
-        strongest = csr_array(keep_strongest(binding.distances, wide, **few))
+        strongest = keep_strongest(binding.distances, influences.weights, **few)
         influences.strongest.clear()
         influences.strongest[key] = strongest
-    weights = strongest.toarray()
     options = {"leaf": binding.method.leaf, **influences.options, **few}
-    return replace(binding, weights=weights, method=binding.method.with_options(**options))
+    return replace(binding, rows=strongest, method=binding.method.with_options(**options))
 
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:

@@ -44,8 +44,16 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
     """
     make = np.recarray if vars(config)["DISABLE_JIT"] else np.empty  # without attributes
     labels = make(nodes * each, LABEL)
-    labels[:] = np.inf, NO_JOINT, LOOSE, 0
+    _empty(labels)
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
+
+
+@compiled
+def _empty(labels):
+    """Make labels unused, field by field: numpy would go through them once for each field."""
+    for label in range(len(labels)):
+        labels[label].distance, labels[label].joint = np.inf, NO_JOINT
+        labels[label].after, labels[label].before = LOOSE, 0
 
 
 @compiled(inline="always")

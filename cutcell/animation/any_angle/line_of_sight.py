@@ -133,12 +133,17 @@ def _traverse(steps, point, x, y, z):
     """
     dx, dy, dz = max(abs(x), TIE), max(abs(y), TIE), max(abs(z), TIE)
     # Where the line next leaves its cell along each axis, as a fraction of its length.
-    tx, ty, tz = 0.5 / dx, 0.5 / dy, 0.5 / dz
+    ex, ey, ez = 1 / dx, 1 / dy, 1 / dz
+    tx, ty, tz = 0.5 * ex, 0.5 * ey, 0.5 * ez
+    along_x, along_y, along_z = 3 * (x < 0), 1 + 3 * (y < 0), 2 + 3 * (z < 0)  # columns of `steps`
     while point != OUTSIDE:
         t = min(tx, ty, tz) + TIE
         if t >= 1:
             return True
-        # Through an edge or a corner of the cell it leaves along several.
-        point = _neighbour(steps, point, (x * (tx <= t), y * (ty <= t), z * (tz <= t)))
-        tx, ty, tz = tx + (tx <= t) / dx, ty + (ty <= t) / dy, tz + (tz <= t) / dz
+        by_x, by_y, by_z = tx <= t, ty <= t, tz <= t
+        if by_x + by_y + by_z == 1:
+            point = steps[point, by_x * along_x + by_y * along_y + by_z * along_z]
+        else:  # through an edge or a corner of the cell it leaves along several
+            point = _neighbour(steps, point, (x * by_x, y * by_y, z * by_z))
+        tx, ty, tz = tx + by_x * ex, ty + by_y * ey, tz + by_z * ez
     return False

@@ -20,13 +20,14 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ...bones.bones import Bones, Sources
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...runtime.compiled import no_refcount
 from ...runtime.progress import Progress, Shares, Tell, silent
-from ...runtime.threads import in_threads, parts, threads
+from ...runtime.threads import in_threads
 from .contraction import Contraction
 from .labels import (
     END,
@@ -57,8 +58,6 @@ SPAN = 1
 """Units of distance that the buckets cover at a time."""
 BATCH = 25_000
 """Labels that are settled in a few hundredths of a second: then progress is reported."""
-PART = 2_000_000
-"""Distances that are compared in less than a tenth of a second."""
 
 
 def any_angle_paths(
@@ -71,10 +70,10 @@ def any_angle_paths(
     within: float = np.inf,
     least: NDArray[np.float64] | None = None,
     progress: Progress = silent,
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Compute the length of the shortest any-angle path from each joint to each node.
 
-    Shapes: targets (t,), least (K,); returns (j, t).
+    Shapes: targets (t,), least (K,); returns rows (t, j) of the joints that reach a node.
     """
     ranking = rank_bones(graph, contraction, bones, sources)
     count = len(ranking.joints)
@@ -85,28 +84,28 @@ def any_angle_paths(
     else:  # one by one, so the nearest joint is not known
         nearest, within = 1, np.inf
         groups = list(np.eye(count, dtype=np.bool_))
-    row = np.argsort(np.argsort(ranking.joints))
-    result = np.full((count, len(targets)), np.inf)
+    number = np.argsort(np.argsort(ranking.joints))
+    shape = len(targets), len(groups) * nearest
+    joint, distance = np.empty(shape, np.int32), np.empty(shape)
     shares = Shares(progress, "distances", len(groups))
-
     body = body_of(graph, contraction)
 
     def propagate(share: int) -> None:
         front = begin(ranking, len(contraction.node), groups[share], nearest, least)
         _propagate(body, contraction, ranking, front, within, lambda done: shares.tell(share, done))
         shares.tell(share, 1.0)
-        labels = front.labels, front.parents, nearest
-        _read(graph.nodes, body, ranking.table, *labels, targets, row, result)
+        labels, column = (front.labels, front.parents, nearest), share * nearest
+        _read(graph.nodes, body, ranking.table, *labels, targets, number, column, joint, distance)
 
     in_threads(propagate, range(len(groups)))
+    is_near = distance < np.inf
     if within < np.inf and least is None:  # each part compared its own joints only
-        near = ON_BONE / graph.lattice.resolution
-        in_threads(
-            lambda part: _leave_out(within, near, result[:, part]),
-            parts(len(targets), threads() + result.size // PART),
-            lambda done: progress("distances", 1.0),
-        )
-    return result
+        nearest_distance = np.maximum(distance.min(axis=1), ON_BONE / graph.lattice.resolution)
+        is_near &= distance <= (within * nearest_distance + TIE)[:, None]
+    start = np.append(0, np.cumsum(is_near.sum(axis=1)))
+    rows = csr_array((distance[is_near], joint[is_near], start), (len(targets), count))
+    rows.sort_indices()
+    return rows
 
 
 def least_distances(
@@ -140,11 +139,11 @@ def _propagate(
     enqueue(labels, front.each, head, scale, contraction.node, contraction.number)
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
-    graph = adjacency, body, ranking.table, within
-    arguments = *graph, front.each, labels, front.parents, front.least, (head, scale), ahead
+    space, queue = (adjacency, body, ranking.table), (head, scale, ahead)
+    wavefront = front.each, labels, front.parents, front.least
     last, origin, bucket, settled = len(head) - 1, 0.0, 0, 0
     while True:
-        bucket, count = _settle(*arguments, origin, bucket, BATCH)
+        bucket, count = _settle(space, wavefront, queue, within, origin, bucket, BATCH)
         settled += count
         report(min(settled / len(labels), 0.99))
         if bucket == last:
@@ -154,42 +153,37 @@ def _propagate(
 
 
 @no_refcount
-def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
-    """Write the distances at some nodes of the graph; `row` holds the row of each joint.
+def _read(nodes, body, bones, labels, parents, each, targets, number, column, joint, distance):
+    """Write the joints and distances of some nodes of the graph, from a column on.
 
-    A contracted node has line of sight to the parents of its representative.
+    `number` holds the number of each joint by rank. A contracted node has line of sight to the
+    parents of its representative.
     """
-    _, _, _, places, (_, node, number), _ = body
+    _, _, _, places, (_, node, kept), _ = body
     for t in range(len(targets)):
-        target, v = targets[t], number[targets[t]]
+        target, v = targets[t], kept[targets[t]]
         position = nodes[target, 0], nodes[target, 1], nodes[target, 2]
-        for label in range(v * each, v * each + each):
-            if labels[label].joint == NO_JOINT:
-                continue
+        for k in range(each):
+            label = v * each + k
             reached, parent = labels[label].distance, parents[label]
-            if node[v] != target:
+            if labels[label].joint != NO_JOINT and node[v] != target:
                 reached = straight(position, parent_position(places, bones, each, parent, position))
                 reached += labels[parent].distance if parent >= 0 else 0.0
-            distance[row[labels[label].joint], t] = reached
-
-
-def _leave_out(within: float, near: float, distance: NDArray[np.float64]) -> None:
-    """Set distances (j, t) beyond `within` times the least, at least `near`, to infinity."""
-    distance[distance > within * np.maximum(distance.min(axis=0), near) + TIE] = np.inf
+            joint[t, column + k] = number[max(labels[label].joint, 0)]
+            distance[t, column + k] = reached
 
 
 @no_refcount
-def _settle(
-    adjacency, body, bones, within, each, labels, parents, least, queue, ahead, origin, bucket, most
-):
+def _settle(space, wavefront, queue, within, origin, bucket, most):
     """Settle about `most` labels by distance, bucket by bucket, except the last bucket.
 
-    `each` is the number of labels a node has; `ahead` is a workspace for a node's neighbours.
-    Returns the bucket to continue with, and how many labels have been settled.
+    The queue's buckets begin at `origin`, and it has a workspace for a node's neighbours. Returns
+    the bucket to continue with, and how many labels have been settled.
     """
-    (indptr, indices), (head, scale) = adjacency, queue
+    (indptr, indices), body, bones = space
+    (each, labels, parents, least), (head, scale, ahead) = wavefront, queue
     resolution, first_point, first_surface, nodes, _, _ = body
-    settled, label = 0, END
+    on_bone, settled, label = ON_BONE / resolution, 0, END
     while bucket < len(head) - 1 and settled < most:
         sort(head, labels, bucket)
         while label != END or (head[bucket] != END and settled < most):
@@ -213,7 +207,7 @@ def _settle(
                 position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
                 start = parent_position(nodes, bones, each, grandparent, position)
                 reached, parent = to_grandparent + straight(position, start), grandparent
-                bound = within * max(least[v], ON_BONE / resolution) + TIE
+                bound = within * max(least[v], on_bone) + TIE
                 if reached >= limit or reached > bound:
                     continue  # a path by way of u is no shorter
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))

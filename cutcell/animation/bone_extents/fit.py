@@ -13,10 +13,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...bones.bones import Bones
-from ...bones.nearest import NodeTree
+from ...bones.nearest import NodeGrid
+from ...geometry.sparse_rows import rows_of_entries
 from ...geometry.triangles import areas
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
@@ -41,14 +43,14 @@ near there. Shorter ones have hardly any direction."""
 def fit_bones(
     graph: CutCellGraph,
     skeleton: Skeleton,
-    tree: NodeTree,
+    grid: NodeGrid,
     allowed: NDArray[np.bool_] | None = None,
 ) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight, of each character by itself.
 
     Shapes: allowed (n, j), see `Rig.allowed`; returns aimed (b,).
     """
-    probe = BodyProbe(graph, tree)
+    probe = BodyProbe(graph, grid)
     together = share_a_skin(allowed, len(skeleton.joints))
     parts = []
     for joints, own in characters(skeleton, together):
@@ -153,20 +155,20 @@ def aim_leaf_bones(
     graph: CutCellGraph,
     bones: Bones,
     aimed: NDArray[np.bool_],
-    distance: NDArray[np.float64],
+    distance: csr_array,
     nearest: NDArray[np.float64],
 ) -> Bones:
     """End leaf bones in the middle of the skin that they move.
 
-    Shapes: aimed (b,), distance (t, k), nearest (k,).
+    Shapes: aimed (b,), distance (k, t), nearest (k,).
     """
     points = graph.nodes[: len(nearest)]
     area = np.bincount(graph.faces.ravel(), np.repeat(areas(points[graph.faces]), 3), len(points))
-    leaf, vertex = np.isfinite(distance).nonzero()
-    share = np.maximum(nearest[vertex], TIE) / np.maximum(distance[leaf, vertex], TIE)
+    leaf, vertex, leaves = distance.indices, rows_of_entries(distance), distance.shape[1]
+    share = np.maximum(nearest[vertex], TIE) / np.maximum(distance.data, TIE)
     part = area[vertex] * share**REGION_POWER
-    total = np.bincount(leaf, part, len(distance))
-    moments = [np.bincount(leaf, part * points[vertex, axis], len(distance)) for axis in range(3)]
+    total = np.bincount(leaf, part, leaves)
+    moments = [np.bincount(leaf, part * points[vertex, axis], leaves) for axis in range(3)]
     has_skin = total > 0
     end = bones.end.copy()
     middle = np.array(moments).T[has_skin] / total[has_skin, None]

@@ -8,8 +8,8 @@ from scipy.sparse import csr_array
 
 from ...geodesics import Bones
 from ...geometry.triangles import face_edges
-from ...geometry.vectors import TIE
 from ...rig import Skeleton
+from ...rig.rows import scaled, single, strongest
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
 
@@ -103,30 +103,21 @@ def cross_component_penalty(
 
 
 def make_rigid(
-    surface: SurfaceOperators, weights: NDArray[np.float64], independent: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+    surface: SurfaceOperators, weights: csr_array, independent: NDArray[np.bool_]
+) -> csr_array:
     """Make components rigid to the joint that nearly all of their area follows: plates, wheels.
 
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
-    component = surface.component
+    component, joints = surface.component, weights.shape[1]
     entries = surface.areas, (component, strongest(weights))
-    votes = csr_array(entries, (len(independent), weights.shape[1])).toarray()
-    share = votes.max(axis=1) / np.maximum(votes.sum(axis=1), 1e-300)
-    rigidity = np.where(independent, 0.0, ramp(share, *RIGID))[component]
-    chosen = np.flatnonzero(rigidity)
-    if not len(chosen):
+    votes = csr_array(entries, (len(independent), joints))
+    share = votes.max(axis=1).toarray() / np.maximum(votes.sum(axis=1), 1e-300)
+    rigidity = np.where(independent, 0.0, ramp(share, *RIGID))
+    if not rigidity.any():
         return weights
-    result = weights.copy()
-    result[chosen] *= 1 - rigidity[chosen, None]
-    result[chosen, strongest(votes)[component[chosen]]] += rigidity[chosen]
-    return result
-
-
-def strongest(shares: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the joint with the largest of each row's shares (n, j), the first of equals."""
-    most = shares.max(axis=1, keepdims=True)
-    return (shares >= most * (1 - TIE)).argmax(axis=1)
+    rigid = scaled(single(strongest(votes), joints), rigidity)[component]
+    return scaled(weights, 1 - rigidity[component]) + rigid
 
 
 def ramp(share: NDArray[np.float64], low: float, high: float) -> NDArray[np.float64]:

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
 from ...geometry.vectors import TIE, segment_fraction
+from ...rig.rows import rows_of_entries
 from ...runtime.compiled import no_refcount
 from .adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment
@@ -42,26 +44,23 @@ class Division:
 
     Parameters
     ----------
-    distances : BoneDistances
     surface : SurfaceOperators
-        The surface of their graph.
     containment, penalty : arrays, shape (components, j)
         See `joint_containment`, and `cross_component_penalty`, which adjustments change.
     radius : array, shape (j,)
         Beyond which a joint's distances grow by their square.
     beyond : array, shape (k,), bool
         Which vertices have a share of a joint beyond its radius.
-    weights : array, shape (k, j)
-        The share of each joint. Rows sum to one.
+    weights : csr_array, shape (k, j)
+        The share of each joint that was measured. Rows sum to one.
     """
 
-    distances: BoneDistances
     surface: SurfaceOperators
     containment: NDArray[np.float64]
     penalty: NDArray[np.float64]
     radius: NDArray[np.float64]
     beyond: NDArray[np.bool_]
-    weights: NDArray[np.float64]
+    weights: csr_array
 
     @classmethod
     def by(
@@ -69,91 +68,70 @@ class Division:
         distances: BoneDistances,
         surface: SurfaceOperators,
         adjustments: Adjustments | None = None,
-        before: Division | None = None,
     ) -> Division:
-        """Divide a surface by distances: first without radii, which are measured of what results.
-
-        Where distances are the same as those `before`, which is of the same surface, its weights
-        are taken over.
-        """
-        joints, vertices = distances.at_welded.shape
-        containment, owned = joint_containment(surface, distances.bones, distances.skeleton, joints)
+        """Divide a surface by distances: at first without radii, which the result has measured."""
+        rows, bones = distances.rows, distances.bones
+        vertices, joints = rows.shape
+        containment, owned = joint_containment(surface, bones, distances.skeleton, joints)
         penalty = cross_component_penalty(containment, owned)
-        distance = distances.at_welded
         if adjustments is not None:
             penalty = penalty / adjustments.gain
-        if before is None:
-            weights, chosen = np.zeros((vertices, joints)), np.ones(vertices, np.bool_)
-        else:
-            weights = before.weights.copy()
-            chosen = before.beyond | (distance != before.distances.at_welded).any(axis=0)
-            chosen |= (penalty != before.penalty).any(axis=1)[surface.component]
-        _divide(distances, surface, penalty, np.full(joints, np.inf), chosen, weights)
         resolution = distances.graph.lattice.resolution
-        radius = _radii(weights, distance, surface.areas, distances.bones, resolution)
+        share = np.empty(len(rows.data))
+
+        def divide(radius: NDArray[np.float64], chosen: NDArray[np.intp]) -> None:
+            _divide_by_distance(
+                surface.points,
+                surface.normals,
+                rows.indptr,
+                rows.indices,
+                rows.data,
+                penalty,
+                surface.component,
+                np.searchsorted(bones.joint, np.arange(joints + 1)),
+                bones.start,
+                bones.end,
+                MIN_CELLS / resolution,
+                radius,
+                chosen,
+                share,
+            )
+
+        divide(np.full(joints, np.inf), np.arange(vertices))
+        weights = csr_array((share, rows.indices, rows.indptr), rows.shape)
+        radius = _radii(weights, rows.data, surface.areas, bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
-        beyond = np.zeros(vertices, np.bool_)
-        for j in np.flatnonzero(np.isfinite(radius)):
-            beyond |= (distance[j] > radius[j]) & (weights[:, j] > MIN_SHARE)
-        _divide(distances, surface, penalty, radius, beyond, weights)
-        return cls(distances, surface, containment, penalty, radius, beyond, weights)
-
-
-def _divide(
-    distances: BoneDistances,
-    surface: SurfaceOperators,
-    penalty: NDArray[np.float64],
-    radius: NDArray[np.float64],
-    chosen: NDArray[np.bool_],
-    weights: NDArray[np.float64],
-) -> None:
-    """Divide chosen vertices (k,) among joints: write their weights (k, j)."""
-    bones = distances.bones
-    _divide_by_distance(
-        surface.points,
-        surface.normals,
-        distances.at_welded,
-        penalty,
-        surface.component,
-        np.searchsorted(bones.joint, np.arange(len(radius) + 1)),
-        bones.start,
-        bones.end,
-        MIN_CELLS / distances.graph.lattice.resolution,
-        radius,
-        chosen,
-        weights,
-    )
+        is_beyond = (rows.data > radius[rows.indices]) & (share > MIN_SHARE)
+        beyond = np.bincount(rows_of_entries(rows)[is_beyond], minlength=vertices) > 0
+        divide(radius, np.flatnonzero(beyond))
+        return cls(surface, containment, penalty, radius, beyond, weights)
 
 
 @no_refcount
 def _divide_by_distance(
-    points, normals, distance, penalty, component, bone, start, end, near, radius, chosen, weights
-):
+    points, normals, begin, joint, distance, penalty, component, bone, start, end, near, radius,
+    chosen, share,
+):  # fmt: skip
     """Divide chosen vertices among joints by distance; `bone` holds the first bone of each joint.
 
     Distances up to `near` are equal; beyond a joint's `radius` they grow by their square.
     """
-    for v in range(len(points)):
-        if not chosen[v]:
-            continue
+    for v in chosen:
         least = np.inf
-        for j in range(len(distance)):
-            weights[v, j] = 0.0
-            if distance[j, v] == np.inf:
-                continue
-            effective = penalty[component[v], j] * max(distance[j, v], near)
-            effective *= max(1.0, distance[j, v] / radius[j])
+        for e in range(begin[v], begin[v + 1]):
+            j = joint[e]
+            effective = penalty[component[v], j] * max(distance[e], near)
+            effective *= max(1.0, distance[e] / radius[j])
             effective /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
-            weights[v, j] = effective
+            share[e] = effective
             least = min(least, effective)
         total = 0.0
-        for j in range(len(distance)):
-            if distance[j, v] < np.inf:
-                weights[v, j] = (least / weights[v, j]) ** POWER
-                total += weights[v, j]
-        for j in range(len(distance)):
-            weights[v, j] /= total
+        for e in range(begin[v], begin[v + 1]):
+            share[e] = (least / share[e]) ** POWER
+            total += share[e]
+        for e in range(begin[v], begin[v + 1]):
+            share[e] /= total
 
 
 @no_refcount
@@ -176,7 +154,7 @@ def _facing(point, normal, start, end, first, last):
 
 
 def _radii(
-    weights: NDArray[np.float64],
+    weights: csr_array,
     distance: NDArray[np.float64],
     areas: NDArray[np.float64],
     bones: Bones,
@@ -187,21 +165,22 @@ def _radii(
     A neck's surface lies all around it at about one distance: what is much farther, such as a
     chin, is not the neck's even if no other bone is nearer. Where a leaf bone ends is only a
     guess, so that its surface may be at any distance: its radius is infinite.
+
+    Shapes: weights (k, j), distance (e,) of each entry, areas (k,).
     """
-    step = -(-len(weights) // MANY)
-    weights, distance, areas = weights[::step], distance[:, ::step], areas[::step]
-    entry = np.flatnonzero(weights > MIN_SHARE)
-    vertex, joint = np.divmod(entry, len(distance))
-    length, area = distance[joint, vertex], weights.ravel()[entry] * (areas[vertex] + 1e-12)
+    vertex, joints = rows_of_entries(weights), weights.shape[1]
+    entry = np.flatnonzero((weights.data > MIN_SHARE) & (vertex % -(-len(areas) // MANY) == 0))
+    vertex, joint = vertex[entry], weights.indices[entry]
+    length, area = distance[entry], weights.data[entry] * (areas[vertex] + 1e-12)
     # By joint, then by length: one sort of sums takes a third of the time of two sorts.
     order = np.argsort(joint * (1 + length.max(initial=0.0)) + length, kind="stable")
     joint, length, total = joint[order], length[order], np.cumsum(area[order])
-    first = np.searchsorted(joint, np.arange(len(distance) + 1))
+    first = np.searchsorted(joint, np.arange(joints + 1))
     before = np.concatenate([[0.0], total])[first]
     middle = (before[:-1] + before[1:]) / 2 - TIE * before[-1]
     median = np.maximum(np.searchsorted(total, middle), first[:-1])
-    radius = np.full(len(distance), np.inf)
-    measured = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
+    radius = np.full(joints, np.inf)
+    measured = _leads_on(bones, joints) & (first[1:] > first[:-1])
     least = MIN_RADIUS / resolution
     radius[measured] = RADIUS_FACTOR * np.maximum(length[median[measured]], least)
     return radius

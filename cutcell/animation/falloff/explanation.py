@@ -25,10 +25,10 @@ LOST = {
 
 def factors_of(falloff: RigFalloff, vertex: int, joint: int, gain: float) -> dict[str, float]:
     """Return what a joint's distance at a vertex is multiplied by, beside the joint's gain."""
-    division, surface, node = falloff.division, falloff.surface, falloff.graph.vertex_node[vertex]
-    distances, radius = division.distances, 1.0
+    division, surface, distances = falloff.division, falloff.surface, falloff.distances
+    node, radius = distances.graph.vertex_node[vertex], 1.0
     if division.beyond[node]:  # elsewhere nothing is beyond any radius
-        radius = float(distances.at_welded[joint, node] / division.radius[joint])
+        radius = float(distances.at(joint, vertex) / division.radius[joint])
     away = facing(surface.points[node], surface.normals[node], distances.bones, joint)
     return {
         "component": float(division.penalty[surface.component[node], joint]) * gain,

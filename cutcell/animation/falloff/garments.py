@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ...graph import CutCellGraph
+from ...rig.rows import scaled, with_rows
 from .components import SMALL, longest_sides
 from .containment import ramp
 from .diffusion import Diffusion
@@ -24,9 +26,9 @@ def drape(
     surface: SurfaceOperators,
     containment: NDArray[np.float64],
     diffusion: Diffusion,
-    weights: NDArray[np.float64],
+    weights: csr_array,
     independent: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Give garments the weights of the nearest surface of the body, smoothed: capes, skirts.
 
     Shapes: containment (components, j), weights (k, j), independent (components,); returns (k, j).
@@ -41,6 +43,6 @@ def drape(
     if not len(garment):
         return weights
     _, mean = nearest_on_body(graph, has_bones[component], surface.points[garment])
-    draped = weights.copy()
-    draped[garment] = mean @ weights
-    return weights + follows[:, None] * (diffusion.spread(draped) - weights)
+    # Components do not conduct to each other: garments are spread by themselves.
+    draped = with_rows(csr_array(weights.shape), garment, mean @ weights)
+    return scaled(weights, 1 - follows) + scaled(diffusion.spread(draped), follows)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ...geodesics import BoneDistances
-from ...graph import CutCellGraph
+from ...rig.rows import rows_of_entries, scaled, with_data
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
 from .adjustments import Adjustments
@@ -30,7 +31,7 @@ class RigFalloff:
 
     Parameters
     ----------
-    graph : CutCellGraph
+    distances : BoneDistances
     surface : SurfaceOperators
     division : Division
         The surface divided among the joints.
@@ -40,7 +41,7 @@ class RigFalloff:
         Which connected components are never rigid.
     """
 
-    graph: CutCellGraph
+    distances: BoneDistances
     surface: SurfaceOperators
     division: Division
     diffusion: Diffusion
@@ -50,7 +51,8 @@ class RigFalloff:
     def over(cls, distances: BoneDistances, adjustments: Adjustments | None = None) -> RigFalloff:
         """Divide the surface of a graph by distances; prepare its diffusion by the nearest."""
         graph = distances.graph
-        surface, depth = surface_of(graph), distances.at_welded.min(axis=0)
+        surface, rows = surface_of(graph), distances.rows
+        depth = np.minimum.reduceat(rows.data, rows.indptr[:-1])
         division, diffusion = run_parallel(
             lambda: Division.by(distances, surface, adjustments),
             lambda: Diffusion.over(surface, depth, graph.lattice.resolution),
@@ -58,9 +60,9 @@ class RigFalloff:
         independent = np.zeros(len(division.containment), np.bool_)
         if adjustments is not None:
             independent[surface.component[adjustments.independent]] = True
-        return cls(graph, surface, division, diffusion, independent)
+        return cls(distances, surface, division, diffusion, independent)
 
-    def steps(self, report: Tell) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    def steps(self, report: Tell) -> Iterator[tuple[str, csr_array]]:
         """Yield the name of each step and the weights (k, j) of welded vertices after it."""
         weights = self.division.weights
         yield "falloff", weights
@@ -70,9 +72,9 @@ class RigFalloff:
         yield "rigid", weights
         yield "tail", without_tail(weights)
 
-    def with_rigid_parts(self, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    def with_rigid_parts(self, weights: csr_array) -> csr_array:
         """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
-        graph, surface, independent = self.graph, self.surface, self.independent
+        graph, surface, independent = self.distances.graph, self.surface, self.independent
         containment = self.division.containment
         if len(containment) > 1:
             weights = drape(graph, surface, containment, self.diffusion, weights, independent)
@@ -80,9 +82,8 @@ class RigFalloff:
         return attach_accessories(graph, surface, containment, weights, independent)
 
 
-def without_tail(weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Subtract a part of each vertex's largest weight from all of them, in place."""
-    weights -= TAIL * weights.max(axis=1, keepdims=True)
-    np.maximum(weights, 0.0, out=weights)
-    weights /= weights.sum(axis=1, keepdims=True)
-    return weights
+def without_tail(weights: csr_array) -> csr_array:
+    """Subtract a part of each vertex's largest weight from all of them."""
+    tail = TAIL * weights.max(axis=1).toarray()
+    weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
+    return scaled(weights, 1 / weights.sum(axis=1))

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...bones.nearest import NodeTree
+from ...bones.nearest import NodeGrid
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
+from ...rig.rows import scaled, single, strongest, with_rows
 from .components import SMALL, longest_sides
-from .containment import ramp, strongest
+from .containment import ramp
 from .surface_operators import SurfaceOperators
 
 CONTACT = 1.0
@@ -25,9 +26,9 @@ def attach_accessories(
     graph: CutCellGraph,
     surface: SurfaceOperators,
     containment: NDArray[np.float64],
-    weights: NDArray[np.float64],
+    weights: csr_array,
     independent: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> csr_array:
     """Make small components without bones rigid: eyes, buttons, horns, armour.
 
     Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
@@ -52,8 +53,8 @@ def attach(
     graph: CutCellGraph,
     surface: SurfaceOperators,
     is_accessory: NDArray[np.bool_],
-    weights: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    weights: csr_array,
+) -> csr_array:
     """Make some components, shape (components,), rigid to the others where they touch them.
 
     `weights` and what is returned have the shape (k, j).
@@ -72,26 +73,22 @@ def attach(
         label[touching],
         len(is_accessory),
     )
-    result = weights.copy()
-    result[attached] = rows[label]
-    return result
+    return with_rows(weights, attached, rows[label])
 
 
 def _contact_weights(
-    touched: NDArray[np.float64],
-    areas: NDArray[np.float64],
-    component: NDArray[np.int32],
-    components: int,
-) -> NDArray[np.float64]:
+    touched: csr_array, areas: NDArray[np.float64], component: NDArray[np.int32], components: int
+) -> csr_array:
     """Average the weights touched (c, j) over each component's contact: (components, j)."""
+    joints = touched.shape[1]
     entries = areas, (component, np.arange(len(component)))
     gather = csr_array(entries, (components, len(component)))
-    joints = np.eye(touched.shape[1])
-    total = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
-    mean = gather @ touched / total
-    share = np.maximum(gather @ joints[strongest(touched)] / total, mean)
-    alone = ramp(share.max(axis=1, keepdims=True), *DOMINANT)
-    return mean + alone * (joints[strongest(share)] - mean)
+    gather = scaled(gather, 1 / np.maximum(gather.sum(axis=1), 1e-300))
+    mean = gather @ touched
+    mean.sort_indices()
+    share = mean.maximum(gather @ single(strongest(touched), joints))
+    alone = ramp(share.max(axis=1).toarray(), *DOMINANT)
+    return scaled(mean, 1 - alone) + scaled(single(strongest(share), joints), alone)
 
 
 def nearest_on_body(
@@ -106,7 +103,7 @@ def nearest_on_body(
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
     distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
     corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
     part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,6 +13,7 @@ from ...geometry.laplacian import stiffness, vertex_areas, vertex_normals
 from ...geometry.triangles import label_components
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
+from .dissection import Dissection, dissect
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +32,11 @@ class SurfaceOperators:
         The connected component of each welded vertex, see `label_components`.
     stiffness : tuple of arrays
         Rows of the Laplacian, see `laplacian.stiffness`.
+
+    Attributes
+    ----------
+    dissection : Dissection
+        Order in which equations with such rows are solved.
     """
 
     points: NDArray[np.float64]
@@ -38,6 +45,11 @@ class SurfaceOperators:
     areas: NDArray[np.float64]
     component: NDArray[np.int32]
     stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+
+    @cached_property
+    def dissection(self) -> Dissection:
+        """Order in which equations with such rows are solved."""
+        return dissect(*self.stiffness[:2])
 
     @classmethod
     def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> SurfaceOperators:

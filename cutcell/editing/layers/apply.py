@@ -84,7 +84,7 @@ def blended(
     share = strength[:, None]
     rows = (1 - share) * below + share * content
     between = (strength > 0) & (strength < 1) & rows.any(axis=1)
-    rows[between] = prune(rows[between], max_influences, 0.0, priority)
+    rows[between] = prune(csr_array(rows[between]), max_influences, 0.0, priority).toarray()
     rows[strength == 0] = below[strength == 0]
     rows[strength == 1] = content[strength == 1]
     return rows

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal
 
+from ...checks import assign, check_choice, check_flag, check_integer, check_number
 from ...errors import ParameterError
 from ...method import ANIMATION, METHODS, Method, method_of
-from ...rig.checks import assign, check_choice, check_flag, check_integer, check_number
 from .packing import joint_name, joint_names, mapping, with_keys
 
 MIN_GAIN, MAX_GAIN = 0.05, 20.0

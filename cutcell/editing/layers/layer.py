@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...checks import assign, check_flag, check_integer, check_kind, check_number
 from ...errors import ParameterError
-from ...rig.checks import assign, check_flag, check_integer, check_kind, check_number, frozen
+from ...rig.checks import frozen
 from .contents import (
     Attached,
     Computed,

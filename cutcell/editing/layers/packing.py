@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ...checks import shown
 from ...errors import ParameterError
-from ...rig.checks import frozen, shown
+from ...rig.checks import frozen
 
 MAX_VERTEX = 2**31 - 2
 SHORT = 32

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, issparse, vstack
 
+from ...checks import assign
 from ...errors import ParameterError
-from ...rig.checks import assign, frozen
+from ...rig.checks import frozen
 from .contents import ROUNDING, Content, Rename
 from .packing import ByValue, ascending, joint_names, packed, packed_rows, unpacked_rows
 

@@ -125,9 +125,9 @@ class RigSources:
         if touching[label].all():
             raise ParameterError("every component is to follow where it touches, and none is left")
         first = np.unique(node, return_index=True)[1]
-        attached = attach(self.graph, surface, touching, below[first])
+        attached = attach(self.graph, surface, touching, csr_array(below[first]))
         assert which is not None
-        rows = attached[node[which]]
+        rows = attached[node[which]].toarray()
         if self.rig.allowed is not None:
             rows = np.where(self.rig.allowed[which], rows, 0.0)
         total = rows.sum(axis=1, keepdims=True)
@@ -182,5 +182,5 @@ class RigSources:
             storable = np.where(allowed if which is None else allowed[which], rows, 0.0)
             total = storable.sum(axis=1, keepdims=True)
             rows = np.divide(storable, total, out=rows.copy(), where=total > 0)
-        method = self.method
-        return prune(rows, method.max_influences, method.threshold, self.priority)
+        few = self.method.max_influences, self.method.threshold
+        return prune(csr_array(rows), *few, self.priority).toarray()

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import dijkstra
 
 from ...bones.bones import Bones
+from ...checks import check_integer
 from ...errors import ParameterError
 from ...geometry.segments import closest_on_segment, distance_to_segment
 from ...graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from ...rig.checks import check_integer
 from ..distances import BoneDistances
 from .inside import Inside
 from .taut import taut

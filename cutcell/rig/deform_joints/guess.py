@@ -15,20 +15,12 @@ from ..rig import FAR_OUTSIDE
 from ..skeleton import Skeleton
 from .body import SPACING, Body
 from .conventions import kinds_by_name
-from .joints import BONE, EXACT, Joints
+from .joints import BONE, EXACT, OUTSIDE, Joints
 
-OUTSIDE = 0.04
-"""Distance from the body beyond which a joint moves none of it, in longest sides."""
-LONG = 1.5
-"""Lengths of the longest bone: the bone of a joint outside that is longer leads from a root."""
 FEW_BONES = 0.15
 """Distance from the body at which a root may lie whose children are all other joints."""
 SAME_PLACE = 0.01
 """Largest distance of a control from the joint that it controls, relative to the longest side."""
-THROUGH_BODY = 0.5
-"""Part of a link between two joints that must run in or near the body for it to be a bone."""
-ALONG = np.linspace(0.1, 0.9, 9)
-"""Samples along a link."""
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
 IK = re.compile(r"\bikp?\b")
@@ -39,8 +31,6 @@ LACKING = 0.03
 """Part of the skin that must lack a joint for the joint to deform."""
 MAX_OUTSIDE = 0.1
 """Distance from the body beyond which no skin lacks a joint, in longest sides."""
-NOTHING_BEYOND = 0.05
-"""Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
 
 MAX_JOINTS = 2_000
 """Joints beyond which only names count, since places would take minutes."""
@@ -106,10 +96,8 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = No
 
 class _Guess(Joints):
     def __init__(self, skeleton: Skeleton, body: Body) -> None:
-        super().__init__(skeleton, body.to_unit(skeleton.joints))
-        self.body = body
+        super().__init__(skeleton, body)
         self.kinds = kinds_by_name(self.names)
-        self.distance = np.zeros(len(self.joints))
         if len(self.joints) <= MAX_JOINTS:
             self.distance = body.away(self.joints)
 
@@ -165,7 +153,7 @@ class _Guess(Joints):
             below = self.bones_below(j)
             if OUTSIDE < self.distance[j] < FAR_OUTSIDE and not len(below):
                 self.rule_out(j, OFF_BODY)
-            elif self.distance[j] <= OUTSIDE and not len(below) and self._ends_a_bone(j):
+            elif self.distance[j] <= OUTSIDE and not len(below) and self.ends_a_bone(j):
                 self.rule_out(j, "end marker: no skin beyond it")
             elif len(self.children[j]):
                 absent[j] = all(absent[k] or self.reason[k] == OFF_BODY for k in self.children[j])
@@ -188,8 +176,8 @@ class _Guess(Joints):
             # Another bone is harmless there, while the wrong one of two turns too much.
             decide = self.rule_out if is_named else self.doubt
             decide(joint, f'root at the place of "{self.names[below[0]]}"')
-        elif self._is_outside(joint):
-            leads = self._leads_into_body(joint, below) and not self._is_longest(joint, below)
+        elif self.is_outside(joint):
+            leads = self.leads_into_body(joint, below) and not self.is_longest(joint, below)
             if is_named or not leads:
                 decide = self.rule_out if is_named or len(below) < 3 else self.doubt
                 decide(joint, "root beside the body")
@@ -212,19 +200,6 @@ class _Guess(Joints):
             if moves_none and (is_root or not is_placed) and self.together(joint, above):
                 self.rule_out(joint, f'not placed: at "{self.names[above]}"')
             above = self.parents[above]
-
-    def _is_longest(self, joint: int, below: NDArray[np.intp]) -> bool:
-        """Return whether the only bone of a joint is far longer than all others."""
-        bones = np.flatnonzero(self.deform & (self.parents >= 0) & (self.parents != joint))
-        away = self.joints[bones] - self.joints[self.parents[bones]]
-        lengths = np.linalg.norm(away, axis=1)[self.deform[self.parents[bones]]]
-        length = np.linalg.norm(self.joints[below[0]] - self.joints[joint])
-        return len(below) == 1 and bool(length > LONG * lengths.max(initial=0))
-
-    def _is_outside(self, joint: int) -> bool:
-        if 0 < self.distance[joint] <= SPACING and self.body.encloses(self.joints[joint]):
-            return False
-        return bool(self.distance[joint] > 0)
 
     def _doubled(self) -> None:
         """Rule out the shorter of two chains on the same places."""
@@ -270,46 +245,14 @@ class _Guess(Joints):
         area /= area.sum()
         nearest = np.full(len(area), np.inf)
         for j in np.flatnonzero(self.deform).tolist():
-            for end in self._bone_ends(j):
+            for end in self.bone_ends(j):
                 away = distance_to_segment(self.body.points, self.joints[j], end)
                 np.minimum(nearest, away, out=nearest)
         while candidates:
-            parts = [area[self._to_joint(j) < NEARER * nearest].sum() for j in candidates]
+            parts = [area[self.to_joint(j) < NEARER * nearest].sum() for j in candidates]
             part, j = max(parts), candidates.pop(int(np.argmax(parts)))
             if part < LACKING:
                 return
             self.deform[j] = True
             self.doubt(j, f"nearest to {part:.0%} of the skin, but {self.reason[j]}")
-            nearest = np.minimum(nearest, self._to_joint(j))
-
-    def _to_joint(self, joint: int) -> NDArray[np.float64]:
-        """Measure from samples of the skin (s,) to a joint."""
-        return np.linalg.norm(self.body.points - self.joints[joint], axis=1)
-
-    def _bone_ends(self, joint: int) -> NDArray[np.float64]:
-        """Return where the bones of a joint end, shape (b, 3); a last one goes on as far."""
-        below = [*self.bones_below(joint)] or [*self.children[joint]]
-        if below:
-            return self.joints[below]
-        above = self.parents[joint] if self.parents[joint] >= 0 else joint
-        return 2 * self.joints[[joint]] - self.joints[[above]]
-
-    def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
-        """Return whether a link to any of the others runs through the body."""
-        away = self.joints[others] - self.joints[joint]
-        points = (self.joints[joint] + ALONG[:, None] * away[:, None]).reshape(-1, 3)
-        near = self.body.to_surface(points) <= OUTSIDE
-        near[~near] = self.body.inside(points[~near])
-        return bool((near.reshape(-1, len(ALONG)).mean(axis=1) >= THROUGH_BODY).any())
-
-    def _ends_a_bone(self, joint: int) -> bool:
-        """Return whether a last joint lies on the skin at the end of a bone, or a little beyond."""
-        parent = self.parents[joint]
-        if parent < 0 or len(self.children[parent]) > 1:
-            return False
-        bone = self.joints[joint] - self.joints[parent]
-        length = np.linalg.norm(bone)
-        away = self.body.points - self.joints[joint]
-        beyond = (away @ bone)[np.linalg.norm(away, axis=1) < length]
-        is_last = len(beyond) > 0 and beyond.max() <= NOTHING_BEYOND * length**2
-        return bool(is_last and not self.body.encloses(self.joints[joint]))
+            nearest = np.minimum(nearest, self.to_joint(j))

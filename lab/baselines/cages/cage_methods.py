@@ -10,11 +10,11 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer
 from cutcell.geometry.segments import distance_to_segment
 from cutcell.isolated.run import LIMIT, WorkFailedError, run_isolated
 from cutcell.method import PAPER, Leaf, check_resolution
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_integer
 
 from ..body import Body, Same
 from ..frame import BaselineBinding, Run, bind_by

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_choice
 from cutcell.errors import Cancelled, CutcellError, ParameterError, WeightsError, comes_from_ctrl_c
 from cutcell.graph import build_graph
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.progress import Progress, silent
 
 from ...metrics import METRICS, TURNED, Measured, Turned, find_gaps

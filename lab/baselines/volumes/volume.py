@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer, check_number
 from cutcell.isolated.run import LIMIT, WorkFailedError, run_isolated
 from cutcell.method import PAPER, Leaf
 from cutcell.rig import Rig
-from cutcell.rig.checks import check_integer, check_number
 
 from ..body import Body, Same
 from ..frame import BaselineBinding, Run, bind_by

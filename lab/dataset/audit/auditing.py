@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.checks import check_integer, check_number
 from cutcell.errors import CutcellError
 from cutcell.io.files import naming
-from cutcell.rig.checks import check_integer, check_number
 
 from ..bind.cluster import Cluster, connected
 from ..read.sources import Content, Source, find_sources, read_content

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.rig.checks import check_choice
+from cutcell.checks import check_choice
 
 from ..read.sources import Source
 from .likeness import TWIN, VARIANT, Similarity

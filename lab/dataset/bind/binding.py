@@ -14,9 +14,9 @@ from time import perf_counter
 from typing import Any
 
 from cutcell import __version__
+from cutcell.checks import check_integer, check_number, one_line
 from cutcell.errors import CutcellError, TooLargeError
 from cutcell.pose.stretch import MAX_SHARE
-from cutcell.rig.checks import check_integer, check_number, one_line
 from cutcell.runtime.compile_cache import announce
 from cutcell.runtime.memory import SHARE, available_memory, gigabytes
 

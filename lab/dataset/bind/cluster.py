@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
+from cutcell.checks import one_line
 from cutcell.errors import CutcellError, MissingLibraryError
-from cutcell.rig.checks import one_line
 
 from .runner import cores, stop_runners
 

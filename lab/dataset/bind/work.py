@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from cutcell import __version__
 from cutcell.binding import Binding, bind
+from cutcell.checks import one_line
 from cutcell.errors import CutcellError
 from cutcell.geodesics import bone_distances
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.graph.memory import needed_memory
 from cutcell.graph.rays import expected_hits
 from cutcell.rig import Rig, Skeleton
-from cutcell.rig.checks import one_line
 
 from ...metrics import deformation_error, precision_recall, weight_l1
 from ..read.sources import Content, read_content

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from cutcell.checks import one_line
 from cutcell.errors import FileError
 from cutcell.io.formats.articulation import HEADERS
-from cutcell.rig.checks import one_line
 from cutcell.runtime.writing import reason, write_all
 
 from .unpickle import Refused, plain_objects

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from cutcell.checks import one_line
 from cutcell.errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
 from cutcell.geometry.triangles import face_edges
 from cutcell.io.formats.articulation import HEADERS, write
 from cutcell.io.weights import normalised, with_deform
 from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.rig.checks import one_line
 
 from .unpickle import plain_objects
 

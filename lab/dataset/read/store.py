@@ -24,10 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell import __version__
+from cutcell.checks import check_choice
 from cutcell.errors import FileError, MissingLibraryError
 from cutcell.io.files import one_line
 from cutcell.method import PAPER, Method
-from cutcell.rig.checks import check_choice
 from cutcell.runtime.sources import PACKAGE, source_digest
 from cutcell.runtime.writing import reason, sweep, write_all
 

@@ -9,7 +9,7 @@ import torch
 from numpy.typing import NDArray
 from torch import nn
 
-from cutcell.rig.checks import check_choice
+from cutcell.checks import check_choice
 
 from ..batches import collate
 from ..recipe import HEADS, SIZES

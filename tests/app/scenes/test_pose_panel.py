@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 import cutcell
 from cutcell.pose import axis_rotation
 from cutcell_app.document.state import State
+from cutcell_app.features.pose.errors import scene_error
 from cutcell_app.features.pose.scene import VIEWS, angles_of, error_of, gizmo_part, rotation_of
 from cutcell_app.features.scenes import Memo, resolve
 from cutcell_app.widgets.changes import changes
-from cutcell_lab.metrics import deformation_error, scene_error
+from cutcell_lab.metrics import deformation_error
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import gap_between

@@ -10,9 +10,10 @@ from cutcell import ParameterError, Skeleton, TriangleMesh, load
 from cutcell.animation.any_angle.contraction import _sorted_by_place, contract
 from cutcell.animation.any_angle.theta_star import SPAN, any_angle_paths, least_distances
 from cutcell.animation.any_angle.wavefront import partition_sources
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 from cutcell.geodesics.solver import find_sources
 from cutcell.geometry.segments import distance_to_segment
+from cutcell.geometry.sparse_rows import to_dense
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.bars import fork
@@ -179,9 +180,9 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
     graph, skeleton = chain_in_the_l()
     bones = bone_distances(graph, skeleton).bones
     contraction = contract(graph)
-    sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
+    sources = find_sources(graph, bones, 5, NodeGrid.of(graph), contraction)
     nodes = contraction.node
-    every = any_angle_paths(graph, contraction, sources, bones, nodes)
+    every = to_dense(any_angle_paths(graph, contraction, sources, bones, nodes)).T
     least = least_distances(graph, contraction, sources, bones)
     error = np.abs(least / every.min(axis=0) - 1)
     assert (error < 1e-9).mean() > 0.95
@@ -190,7 +191,8 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
 
     some = np.isin(bones.joint, (2, 7))
     mine = sources.subset(some), bones.subset(some), nodes
-    result = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
+    rows = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
+    result = to_dense(rows).T
     near = every[[2, 7]] <= 1.5 * np.maximum(least, 0.5 / 24)
     assert 0.1 < near.mean() < 0.5
     assert (np.isfinite(result) == near).mean() > 0.99
@@ -209,10 +211,10 @@ def test_distances_do_not_depend_on_how_vertices_are_numbered():
     nodes = np.arange(graph.first_point, dtype=np.int32)
 
     def measured(contraction):
-        sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
+        sources = find_sources(graph, bones, 5, NodeGrid.of(graph), contraction)
         least = least_distances(graph, contraction, sources, bones)[contraction.number]
         few = any_angle_paths(graph, contraction, sources, bones, nodes, nearest=3, within=6)
-        return least, few
+        return least, to_dense(few)
 
     for expected, result in zip(measured(by_graph), measured(by_place), strict=True):
         np.testing.assert_array_equal(result, expected)
@@ -250,8 +252,8 @@ def test_all_joints_are_measured_where_as_many_are_wanted():
         np.testing.assert_allclose(alone, every.joint[joint], rtol=1e-9)
     few = bone_distances(graph, skeleton, nearest_joints=2)
     np.testing.assert_array_equal(few.on_mesh(7), every.on_mesh(7))
-    np.testing.assert_array_equal(few.all_joints(), every.joint)
-    assert every.all_joints() is every.joint
+    np.testing.assert_array_equal(few.of_all_joints().joint, every.joint)
+    assert every.of_all_joints() is every
     with pytest.raises(ParameterError, match="nearest_joints must be a whole number from 1"):
         bone_distances(graph, skeleton, nearest_joints=0)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.animation.falloff.components import POINTS, bone_containment
@@ -118,7 +119,7 @@ def test_a_body_in_patches_has_no_accessories():
     surface = surface_of(graph)
     containment = np.zeros((int(surface.component.max()) + 1, 2))
     containment[0, 0] = 1
-    weights = np.random.default_rng(0).random((len(surface.points), 2))
+    weights = csr_array(np.random.default_rng(0).random((len(surface.points), 2)))
     independent = np.zeros(len(containment), bool)
     assert attach_accessories(graph, surface, containment, weights, independent) is weights
 
@@ -134,14 +135,14 @@ def test_a_component_follows_the_joint_that_nearly_all_of_it_follows():
     surface = SurfaceOperators.over(vertices, faces.astype(np.int32))
     weights = np.tile([0.6, 0.4], (len(vertices), 1))
     weights[5] = 0.4, 0.6
-    followed = make_rigid(surface, weights, np.array([False, True]))
+    followed = make_rigid(surface, csr_array(weights), np.array([False, True])).toarray()
     np.testing.assert_array_equal(followed[: len(one[0])], [[1, 0]] * len(one[0]))
     np.testing.assert_array_equal(followed[len(one[0]) :], weights[len(one[0]) :])
     # Up to where it is rigid, nothing jumps.
     assert ramp(np.array([0.5, RIGID[0], np.mean(RIGID), RIGID[1]]), *RIGID) == pytest.approx(
         [0, 0, 0.5, 1]
     )
-    split = np.where(vertices[:, :1] < 0.7, [0.6, 0.4], [0.4, 0.6])
+    split = csr_array(np.where(vertices[:, :1] < 0.7, [0.6, 0.4], [0.4, 0.6]))
     assert make_rigid(surface, split, np.zeros(2, bool)) is split
 
 

@@ -32,7 +32,7 @@ def test_the_limit_to_nearest_joints_holds_among_allowed_ones(make):
     nearest = np.argsort(every, axis=0, kind="stable")[:1]
     assert np.take_along_axis(measured, nearest, axis=0).all()
     np.testing.assert_allclose(result.joint[measured], every[measured], atol=1e-9)
-    assert not np.isfinite(result.all_joints()[~allowed.T]).any()
+    assert not np.isfinite(result.of_all_joints().joint[~allowed.T]).any()
     np.testing.assert_array_equal(result.fallback, 0)
 
 
@@ -103,3 +103,21 @@ def test_vertices_that_only_other_joints_reach_have_a_reason():
     crossed = np.kron([[0, 1], [1, 0]], np.ones_like(allowed)).astype(bool)
     result = bone_distances(graph, skeleton, allowed=crossed)
     np.testing.assert_array_equal(result.fallback, NOT_ALLOWED)
+
+
+@pytest.mark.parametrize("has_skins", [False, True])
+def test_distances_are_looked_up_as_in_a_matrix(has_skins):
+    joints, vertices = len(RIG.skeleton.joints), len(RIG.mesh.vertices)
+    allowed = np.ones((vertices, joints), bool)
+    allowed[::2, 1] = not has_skins
+    distances = bone_distances(GRAPH, RIG.skeleton, allowed=allowed, nearest_joints=2)
+    expected = distances.joint
+    assert expected.shape == (joints, vertices)
+    some, few = np.array([4, 0, 7]), np.array([1, 0, 2])
+    for joint, vertex in (
+        (2, 5), (slice(None), 5), (slice(None), some), (2, slice(None)), (2, some),
+        (few, some), (few, slice(None)), (slice(1, 3), slice(3, 9)), (few, 5),
+    ):  # fmt: skip
+        np.testing.assert_array_equal(distances.at(joint, vertex), expected[joint, vertex])
+    np.testing.assert_array_equal(distances.nearest_joint, expected.argmin(axis=0))
+    np.testing.assert_array_equal(distances.least, expected.min(axis=0))

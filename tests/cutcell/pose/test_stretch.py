@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding.warnings import with_warnings
@@ -103,7 +104,7 @@ def test_bindings_and_checks_warn_of_it():
     binding = cutcell.bind(WORM, 16)
     assert binding.stretch.share < MAX_SHARE
     assert CODE not in {getattr(text, "code", "") for text in binding.warnings}
-    worse = with_warnings(WORM, replace(binding, weights=spiked()), Edits())
+    worse = with_warnings(WORM, replace(binding, rows=csr_array(spiked())), Edits())
     assert worse.stretch.share > MAX_SHARE
     warning = next(text for text in worse.warnings if getattr(text, "code", "") == CODE)
     name = WORM.skeleton.names[worse.stretch.joint]

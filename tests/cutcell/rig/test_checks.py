@@ -4,15 +4,8 @@ import numpy as np
 import pytest
 
 from cutcell import MeshError, ParameterError
-from cutcell.rig.checks import (
-    LONG,
-    check_choice,
-    check_flag,
-    check_integer,
-    check_number,
-    check_positions,
-    shown,
-)
+from cutcell.checks import LONG, check_choice, check_flag, check_integer, check_number, shown
+from cutcell.rig.checks import check_positions
 
 STRANGE = [None, "5", b"5", 3 + 4j, [], [5], {}, object(), np.array([5]), np.datetime64("NaT", "s")]
 """No number, though numpy would take some for one."""

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from cutcell import ParameterError, Skeleton, TriangleMesh
 from cutcell.weights.paper_kernel import paper_kernel
@@ -54,13 +55,13 @@ def test_vertices_at_one_place_may_follow_different_joints():
 
 
 def test_pruning_keeps_the_largest():
-    weights = np.array([[0.1, 0.4, 0.2, 0.3], [0.25, 0.25, 0.25, 0.25]])
+    weights = csr_array([[0.1, 0.4, 0.2, 0.3], [0.25, 0.25, 0.25, 0.25]])
     order = np.array([3, 2, 1, 0])
-    result = prune(weights, 2, 0.0, order)
+    result = prune(weights, 2, 0.0, order).toarray()
     np.testing.assert_allclose(result, [[0, 4 / 7, 0, 3 / 7], [0, 0, 0.5, 0.5]])
-    result = prune(weights, None, 0.22, order)
+    result = prune(weights, None, 0.22, order).toarray()
     np.testing.assert_allclose(result[0], [0, 4 / 7, 0, 3 / 7])
-    result = prune(weights, None, 0.9, order)
+    result = prune(weights, None, 0.9, order).toarray()
     np.testing.assert_allclose(result[0], [0, 1, 0, 0])
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from cutcell.pose import linear_blend_skinning, swing
-from cutcell_lab.metrics import clip_error, clips, motion_error
-from cutcell_viewers.skin import Gap
+from cutcell_lab.metrics import clip_error, clips
 from tests.lab.metrics.test_metrics import chain, random_weights
 
 
@@ -35,21 +34,3 @@ def test_clips_are_compared_frame_by_frame(monkeypatch):
     monkeypatch.setattr(clips, "FRAMES", 5)
     assert clip_error(rig, computed, reference)[0].frames == 5
     assert clip_error(still, computed, reference) == ()
-
-
-def test_the_error_of_a_motion_is_that_of_its_frames():
-    rig = chain()
-    clip = swing(rig.skeleton, 1, "z", 40, fps=5)
-    computed, reference = random_weights(rig, 1), random_weights(rig, 2)
-    points = rig.mesh.vertices
-    lengths = []
-    for pose in clip.transforms:
-        one, other = (
-            linear_blend_skinning(points, weights, pose) for weights in (computed, reference)
-        )
-        lengths.append(np.linalg.norm(one - other, axis=1))
-    rms, greatest, most = motion_error(clip, Gap(points, computed, reference).lengths)
-    assert rms == pytest.approx(np.sqrt(np.square(lengths).mean()), rel=1e-4)
-    assert greatest == pytest.approx(np.max(lengths), rel=1e-4)
-    assert rms < most <= greatest
-    assert motion_error(clip, Gap(points, computed, computed).lengths) == (0, 0, 0)

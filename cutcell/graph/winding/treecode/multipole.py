@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.vectors import triangle_normal
-from ....runtime.compiled import compiled
+from ....geometry.triangles import normals
+from ....runtime.compiled import compiled, no_refcount
 
 SIZE = 19
 MONOMIALS = (
@@ -57,7 +57,15 @@ def moments_of(
     """
     leaves, count = len(leaf), len(centre)
     n, ny, nyy = (np.zeros((count, *shape)) for shape in ((3,), (3, 3), (3, 3, 3)))
-    _add_triangles(corners, np.append(leaf, len(corners)), centre, n, ny, nyy)
+    if len(corners) == 0:
+        return np.zeros((count, SIZE))
+    normal = normals(corners)
+    y = corners - np.repeat(centre[leaves:], np.diff(leaf, append=len(corners)), axis=0)[:, None]
+    y = np.concatenate([y, y.sum(axis=1, keepdims=True)], axis=1)  # with three times the middle
+    squares = np.einsum("tca,tcb->tab", y, y)  # quadrature
+    n[leaves:] = np.add.reduceat(normal / 2, leaf)
+    ny[leaves:] = np.add.reduceat(normal[:, :, None] * y[:, None, 3] / 6, leaf)
+    nyy[leaves:] = np.add.reduceat(normal[:, :, None, None] * squares[:, None] / 24, leaf)
     level = leaves // 2
     while level:
         child = np.arange(2 * level, 4 * level)
@@ -75,26 +83,6 @@ def moments_of(
         level //= 2
     rows = n, ny.reshape(count, 9) @ SECOND, nyy.reshape(count, 27) @ THIRD
     return _harmonic(np.concatenate(rows, axis=1))
-
-
-@compiled
-def _add_triangles(corners, bounds, centre, n, ny, nyy):
-    """Sum the normals n of the triangles of each leaf, n y and n y y, by area."""
-    leaves, y = len(bounds) - 1, np.empty((4, 3))
-    for k in range(leaves, 2 * leaves):
-        for t in range(bounds[k - leaves], bounds[k - leaves + 1]):
-            normal = triangle_normal(corners[t, 0], corners[t, 1], corners[t, 2])
-            for a in range(3):
-                for c in range(3):
-                    y[c, a] = corners[t, c, a] - centre[k, a]
-                y[3, a] = y[0, a] + y[1, a] + y[2, a]
-            for i in range(3):
-                n[k, i] += normal[i] / 2
-                for a in range(3):
-                    ny[k, i, a] += normal[i] * y[3, a] / 6
-                    for b in range(3):
-                        for c in range(4):  # quadrature
-                            nyy[k, i, a, b] += normal[i] * y[c, a] * y[c, b] / 24
 
 
 def _harmonic(p: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -117,7 +105,7 @@ def in_registers(p):
     # fmt: on
 
 
-@compiled(inline="always")
+@no_refcount
 def add_multipole(local, p, r, distance):
     """Add a cluster's moments to a local expansion; its centre is at r, at that distance."""
     near = 1 / distance

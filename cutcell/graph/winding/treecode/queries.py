@@ -21,9 +21,8 @@ from .solid_angles import (
     SIMD_WIDTH,
     VALUE,
     WORKSPACE,
-    Y,
-    Z,
     caps_winding_numbers,
+    load,
 )
 
 FIRST, LAST = 1e-2, 1e-9
@@ -117,5 +116,5 @@ def _load(which, points, workspace):
     filled = -(-count // SIMD_WIDTH) * SIMD_WIDTH
     for i in range(filled):
         q = which[min(i, count - 1)]
-        workspace[i], workspace[Y + i], workspace[Z + i] = points[q, 0], points[q, 1], points[q, 2]
+        load(workspace, i, points[q, 0], points[q, 1], points[q, 2])
     return filled, (x, y, z), reach

@@ -36,11 +36,10 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, np.int64(0)
-    for i in range(count):
-        points[VALUE + i] = points[IM + i] = 0.0
-        points[RE + i] = points[CLEAR + i] = 1.0
+    begin_sum(points, count)
     for top in among:
-        k, end = top, next_cluster(top)
+        k = np.int64(top)
+        end = next_cluster(k)
         while k != end:
             distance = length(between(centre, clusters.sphere[k])) - reach
             own_error = error_bound(clusters.sphere[k], distance, 0.0)
@@ -53,11 +52,31 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    unscaled = _add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
             k = next_cluster(k)
     for i in range(count):
-        points[VALUE + i] += np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
+        points[VALUE + i] = value_of(points, i)
     return error
+
+
+@no_refcount
+def load(points, i, x, y, z):
+    """Write point i of a workspace."""
+    points[i], points[Y + i], points[Z + i] = x, y, z
+
+
+@no_refcount
+def begin_sum(points, count):
+    """Begin to sum winding numbers at the first `count` points of a workspace."""
+    for i in range(count):
+        points[VALUE + i] = points[IM + i] = 0.0
+        points[RE + i] = points[CLEAR + i] = 1.0
+
+
+@no_refcount
+def value_of(points, i):
+    """Return the sum at a point."""
+    return points[VALUE + i] + np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
 
 
 @vectorized
@@ -74,7 +93,7 @@ def _add_cluster(moments, sphere, points, count):
 
 
 @no_refcount
-def _add_cap(rim, apex, points, count, unscaled):
+def add_cap(rim, apex, points, count, unscaled):
     """Add the solid angles of one cap.
 
     Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
