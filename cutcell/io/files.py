@@ -206,7 +206,7 @@ def as_file(source: Input) -> Iterator[Path]:
     start = data.removeprefix(b"\xef\xbb\xbf")
     matches = {end: re.match(one.suffixes[end], start) for end, one in BY_SUFFIX.items()}
     lengths = {end: match.end() for end, match in matches.items() if match}
-    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) > STL else "")
+    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) >= STL else "")
     stem = Path(str(name).strip("<>")).stem or "bytes"
     with TemporaryDirectory() as folder:
         path = Path(folder, stem + ending)
