@@ -10,16 +10,16 @@ from scipy.sparse import csr_array
 
 from ..animation.any_angle.theta_star import ON_BONE
 from ..bones.bones import Bones
-from ..geometry.sparse_rows import (
+from ..graph.fingerprint import APPROXIMATE
+from ..method import Method
+from ..rig import Skeleton
+from ..rig.rows import (
     chosen_entries,
     least,
     lookup,
     rows_of_entries,
     with_columns,
 )
-from ..graph.fingerprint import APPROXIMATE
-from ..method import Method
-from ..rig import Skeleton
 from .distances import BoneDistances, bone_distances
 from .fallback import REACHED
 
