@@ -12,16 +12,16 @@ from cutcell.animation.any_angle.theta_star import ON_BONE
 from cutcell.bones.bones import Bones
 from cutcell.geodesics.distances import BoneDistances, bone_distances
 from cutcell.geodesics.fallback import REACHED
-from cutcell.geometry.sparse_rows import (
+from cutcell.graph.fingerprint import APPROXIMATE
+from cutcell.method import Method
+from cutcell.rig import Skeleton
+from cutcell.rig.rows import (
     chosen_entries,
     least,
     lookup,
     rows_of_entries,
     with_columns,
 )
-from cutcell.graph.fingerprint import APPROXIMATE
-from cutcell.method import Method
-from cutcell.rig import Skeleton
 
 
 class MovedDistances:

@@ -11,6 +11,7 @@ from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics.fallback import REACHED
 from ..geometry.triangles import label_components
+from ..rig.rows import least
 from ..runtime.display import count, share
 from .finding import Finding, Pose, found
 from .subject import Subject
@@ -87,7 +88,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
     at_welded, area = np.ascontiguousarray(weights[subject.first].T), subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     has_bone = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
-    least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
+    to_joint, number = least(distances.rows), np.zeros(len(area), np.intp)
     for j in np.flatnonzero(has_bone & (at_welded.max(axis=1) > VISIBLE_WEIGHT)).tolist():
         follows = at_welded[j] > VISIBLE_WEIGHT
         influenced = np.flatnonzero(follows)
@@ -104,7 +105,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         if not len(islands):
             continue
         through = through_body(subject, subject.first[islands], np.full(len(islands), j))
-        beyond = through - least[islands]
+        beyond = through - to_joint[islands]
         nearest = np.full(len(total), np.inf)
         np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))
         is_away = nearest[label] > AWAY

@@ -144,8 +144,7 @@ def _directions(
     bone = (parent >= 0) & near[parent] & (length >= COINCIDENT_ENDS)
     bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= MIN_BONE_IN_BODY
     length = np.where(bone, length, 0.0)
-    direction = np.divide(away, length[:, None], out=np.zeros_like(away), where=bone[:, None])
-    return direction, length
+    return np.where(bone[:, None], _unit(away), 0.0), length
 
 
 def _ends(
@@ -273,21 +272,29 @@ def _inferred_tree(
     # Sorted by position, so that ties do not depend on how a file numbers joints.
     members = members[probe.lattice.order(joints[members])]
     places = joints[members]
-    away = places[None] - places[:, None]
-    length = np.linalg.norm(away, axis=2)
-    air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
+    length = cdist(places, places)
+    # One by one: all at once, the sample points of many segments would fill the memory.
+    inner = [probe.inner_part(place, places, strictly=True) for place in places]
+    air = 1 - np.array(inner)
     # Whole numbers, whose sums are exact. Coincident joints cost 1, as zero would mean no edge.
     cost = np.maximum(np.rint(length**HOP * (1 + THROUGH_AIR * air) * 1e12), 1)
     before = dijkstra(cost, return_predecessors=True)[1]
-    unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
     best, least = -1, np.inf
     for root in np.flatnonzero(skeleton.deform[members]):
         # Edges from the root itself do not bend.
         to = np.flatnonzero((before[root] >= 0) & (before[root] != root))
         via = before[root][to]
-        bend = (1 - (unit[before[root][via], via] * unit[via, to]).sum(axis=1)).sum()
+        arriving, leading = places[via] - places[before[root][via]], places[to] - places[via]
+        cosine = (_unit(arriving) * _unit(leading)).sum(axis=1)
+        bend = (1 - cosine).sum()
         if bend < least * (1 - COINCIDENT_ENDS):
             best, least = int(root), float(bend)
     reached = before[best] >= 0
     parents[members[reached]] = members[before[best][reached]]
     return parents
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors (n, 3) of length one, zero for those of no length."""
+    length = np.linalg.norm(vectors, axis=1)[:, None]
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)

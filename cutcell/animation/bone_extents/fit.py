@@ -18,11 +18,11 @@ from scipy.spatial.distance import cdist
 
 from ...bones.bones import Bones
 from ...bones.nearest import NodeGrid
-from ...geometry.sparse_rows import rows_of_entries
 from ...geometry.triangles import areas
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig import Skeleton
+from ...rig.rows import rows_of_entries
 from .chains import COINCIDENT_ENDS, MAX_LENGTH_RATIO, Chains, find_chains
 from .probe import BodyProbe
 from .skins import characters, share_a_skin
