@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.triangles import normals
-from ..runtime.compiled import compiled, no_refcount
+from ..geometry.vectors import triangle_normal
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 
@@ -117,7 +117,7 @@ def expected_hits(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
 ) -> float:
     """Estimate how many hits the rays along x, y and z have: R^2 times projected areas."""
-    return resolution**2 * float(np.abs(normals(vertices[faces])).sum()) / 2
+    return resolution**2 * _projected_area(vertices, faces)
 
 
 def points_on_rays(
@@ -135,7 +135,7 @@ def points_on_rays(
     return points
 
 
-@no_refcount
+@inlined
 def in_space(axis, u, v, along):
     """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""
     if axis == 0:
@@ -171,6 +171,17 @@ def _rasterise(vertices, faces, resolution, flip, face, size, at, hits):
 
 
 @no_refcount
+def _projected_area(vertices, faces):
+    """Sum the areas of all triangles projected along x, along y and along z."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        normal = triangle_normal(a, b, c)
+        total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
+    return total / 2
+
+
+@no_refcount
 def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
     """Sort hits by ray and along it, but for rays with many; `cursor` begins as `start` does."""
     for k in range(len(hits)):
@@ -191,7 +202,7 @@ def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
             position[k], triangle[k], sign[k] = p, t, s
 
 
-@no_refcount
+@inlined
 def first_at_least(coordinate, resolution):
     """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
     i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
@@ -225,7 +236,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@no_refcount
+@inlined
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its left end.
 
@@ -238,14 +249,14 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@no_refcount
+@inlined
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
-@compiled(inline="always")
+@inlined
 def _after(position0, sign0, triangle0, position1, sign1, triangle1):
     if position0 != position1:
         return position0 > position1

@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.triangles import areas
-from ....runtime.compiled import no_refcount
+from ....runtime.compiled import inlined
 from ..boundary import Caps
 from . import multipole
 
@@ -139,7 +139,7 @@ def _measure(
     return sphere, multipole.moments_of(corners, first[start[:-1]], sphere[:, :3])
 
 
-@no_refcount
+@inlined
 def error_bound(sphere, distance, reach):
     """Bound the error of a cluster's expansion in a ball of radius `reach` at that distance."""
     room = distance - sphere[3] - reach
@@ -151,7 +151,7 @@ def error_bound(sphere, distance, reach):
     return sphere[5] * near * near * near * series / (4 * np.pi * squared * squared * room * room)
 
 
-@no_refcount
+@inlined
 def next_cluster(k):
     """Return the cluster that follows k and its descendants in depth-first order; 0 at the end."""
     while k & 1:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.vectors import between, cross, dot, length, segment_fraction, triangle_normal
-from ....runtime.compiled import no_refcount
+from ....runtime.compiled import inlined, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
 from .solid_angles import add_cap, begin_sum, load, value_of
@@ -61,7 +61,7 @@ class LocalExpansions(NamedTuple):
     near: NDArray[np.int32]
 
 
-@no_refcount
+@inlined
 def evaluate(local, x, y, z):
     """Return the value at a displacement (x, y, z) from the centre."""
     linear = local[1] * x + local[2] * y + local[3] * z
@@ -69,7 +69,7 @@ def evaluate(local, x, y, z):
     return local[0] + linear + square / 2 + local[6] * x * y + local[7] * x * z + local[8] * y * z
 
 
-@no_refcount
+@inlined
 def translate(local, x, y, z):
     """Move the centre by (x, y, z)."""
     local[0] = evaluate(local, x, y, z)
@@ -78,7 +78,7 @@ def translate(local, x, y, z):
     local[3] += local[7] * x + local[8] * y - (local[4] + local[5]) * z
 
 
-@no_refcount
+@inlined
 def variation(local, half):
     """Bound how far values differ from the one at the centre, in a cube of that half side."""
     linear = abs(local[1]) + abs(local[2]) + abs(local[3])
@@ -147,7 +147,7 @@ def add_clusters(clusters, among, local, q, reach, tolerance, point):
     local[0] += value_of(point, first)
 
 
-@no_refcount
+@inlined
 def _relative(clusters, k, q, reach):
     """Return a cluster's centre relative to q, its distance, and the error of its expansion."""
     r = between(q, clusters.sphere[k])
@@ -182,7 +182,7 @@ def _add_gradient(local, rim, apex, q, reach, may_cross):
         local[3] += g[2]
 
 
-@no_refcount
+@inlined
 def _biot_savart(a, b, la, lb):
     """Return the integral of r x dr / (4 pi |r|^3) along an edge from a to b.
 
@@ -195,7 +195,7 @@ def _biot_savart(a, b, la, lb):
     return n[0] * factor, n[1] * factor, n[2] * factor
 
 
-@no_refcount
+@inlined
 def _distance_to_edge(a, b):
     """Return the distance of the origin to the edge between a and b."""
     e, t = between(a, b), segment_fraction(a, b, (0.0, 0.0, 0.0))

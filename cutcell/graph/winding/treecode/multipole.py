@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.triangles import normals
-from ....runtime.compiled import compiled, no_refcount
+from ....runtime.compiled import compiled, inlined
 
 SIZE = 19
 MONOMIALS = (
@@ -30,17 +30,17 @@ SECOND, THIRD = (
 """Which products of a tensor are added up, shapes (9, 6) and (27, 10)."""
 
 
-@compiled(inline="always")
+@inlined
 def linear(p, x, y, z):
     return p[0] * x + p[1] * y + p[2] * z
 
 
-@compiled(inline="always")
+@inlined
 def square(p, x, y, z):
     return x * (p[3] * x + p[6] * y + p[7] * z) + y * (p[4] * y + p[8] * z) + p[5] * z * z
 
 
-@compiled(inline="always")
+@inlined
 def cube(p, x, y, z):
     of_x = p[9] * x * x + p[12] * x * y + p[13] * x * z + p[14] * y * y + p[16] * z * z
     of_y = p[10] * y * y + p[15] * y * z + p[17] * z * z + p[18] * x * z
@@ -105,7 +105,7 @@ def in_registers(p):
     # fmt: on
 
 
-@no_refcount
+@inlined
 def add_multipole(local, p, r, distance):
     """Add a cluster's moments to a local expansion; its centre is at r, at that distance."""
     near = 1 / distance

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....geometry.vectors import between, length
-from ....runtime.compiled import no_refcount, vectorized
+from ....runtime.compiled import inlined, no_refcount, vectorized
 from .clusters import error_bound, next_cluster
 from .multipole import cube, in_registers, linear, square
 
@@ -59,13 +59,13 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     return error
 
 
-@no_refcount
+@inlined
 def load(points, i, x, y, z):
     """Write point i of a workspace."""
     points[i], points[Y + i], points[Z + i] = x, y, z
 
 
-@no_refcount
+@inlined
 def begin_sum(points, count):
     """Begin to sum winding numbers at the first `count` points of a workspace."""
     for i in range(count):
@@ -73,7 +73,7 @@ def begin_sum(points, count):
         points[RE + i] = points[CLEAR + i] = 1.0
 
 
-@no_refcount
+@inlined
 def value_of(points, i):
     """Return the sum at a point."""
     return points[VALUE + i] + np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
