@@ -12,7 +12,7 @@ from ..errors import MeshError
 from ..geometry.vectors import TIE
 from ..graph import CutCellGraph
 
-LEAF_SIZE = 32
+NODES_A_LEAF = 32
 """There are a few hundred points and many nodes, so that a shallow tree takes the least time."""
 CELLS_ACROSS = 2**13
 """Cells along each axis that have keys of their own: points lie at most the cube beside it."""
@@ -36,7 +36,7 @@ class NodeTree:
     ) -> None:
         self._number, self._resolution = np.flatnonzero(chosen), resolution
         self._points = nodes[self._number]
-        self._tree = cKDTree(self._points, LEAF_SIZE, compact_nodes=False, balanced_tree=False)
+        self._tree = cKDTree(self._points, NODES_A_LEAF, compact_nodes=False, balanced_tree=False)
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> NodeTree:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..graph import CutCellGraph
     from ..rig import Rig
 
-MAX_NAMES = 12
+ROW_NAMES = 12
 """Maximum number of names in one row; `--json` lists all."""
 
 
@@ -77,9 +77,9 @@ def _part_rows(meshes: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[tu
 def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
     entries = [
         item["name"] + (f" ({note})" if note else "")
-        for item, note in zip(items[:MAX_NAMES], notes, strict=False)
+        for item, note in zip(items[:ROW_NAMES], notes, strict=False)
     ]
-    more = [f"and {len(items) - MAX_NAMES} more"] if len(items) > MAX_NAMES else []
+    more = [f"and {len(items) - ROW_NAMES} more"] if len(items) > ROW_NAMES else []
     return f"{len(items):,}: " + ", ".join(entries + more)
 
 

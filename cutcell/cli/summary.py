@@ -13,7 +13,7 @@ from ..geometry.triangles import face_edges, label_components
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig import Rig, Skeleton, TriangleMesh
 
-KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
+GRAPH_KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 """Name of each kind of node and edge."""
 
 
@@ -94,5 +94,5 @@ def summarize_weights(weights: NDArray[np.float64]) -> dict[str, float]:
 
 
 def _by_kind(kinds: NDArray[np.uint8]) -> dict[str, int]:
-    counts = {name: int((kinds == code).sum()) for name, code in KINDS.items()}
+    counts = {name: int((kinds == code).sum()) for name, code in GRAPH_KINDS.items()}
     return counts | {"total": len(kinds)}

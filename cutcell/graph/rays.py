@@ -28,11 +28,11 @@ from ..runtime.threads import in_threads
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
-CONTACT = 1e-9
+CONTACT_DISTANCE = 1e-9
 """Distance of two faces that touch, at most: above rounding."""
 MANY_HITS = 64
 """Rays with more hits are sorted by numpy."""
-BUFFER = 2**14
+FIRST_HITS = 2**14
 """Hits for which memory is taken at first; it is doubled when needed."""
 
 
@@ -68,7 +68,7 @@ def cast_rays(
     """
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
     flip = -1 if axis == 1 else 1  # x cross z points along -y
-    at, hits, size, face = np.empty(BUFFER), np.empty((BUFFER, 3), np.int32), 0, 0
+    at, hits, size, face = np.empty(FIRST_HITS), np.empty((FIRST_HITS, 3), np.int32), 0, 0
     while True:
         face, size = _rasterise(projected, faces, resolution, flip, face, size, at, hits)
         if face == len(faces):
@@ -105,7 +105,9 @@ def part_at_contacts(hits: RayHits, part: NDArray[np.int32]) -> RayHits:
     """
     ray = np.repeat(np.arange(len(hits.start) - 1), np.diff(hits.start))
     of, sign, triangle = part[hits.triangle], hits.sign.copy(), hits.triangle.copy()
-    is_contact = (np.diff(hits.position) <= CONTACT) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    is_contact = (
+        (np.diff(hits.position) <= CONTACT_DISTANCE) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    )
     is_contact &= (of[1:] != of[:-1]) & (of[1:] >= 0) & (of[:-1] >= 0)
     k = np.flatnonzero(is_contact)
     for column in (sign, triangle):

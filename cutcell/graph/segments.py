@@ -107,7 +107,7 @@ class RayWindingNumbers(Protocol):
         """
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
-        """Return the winding numbers at the midpoints, shape (s,)."""
+        """Return w or tau + floor(w - tau), of the winding number w of each midpoint, (s,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class PointwiseWindingNumbers:
 
 def inside_intervals(
     hits: Sequence[RayHits],
-    winding_threshold: float,
+    tau: float,
     winding_numbers: RayWindingNumbers,
     resolution: int,
     report: Tell = lambda done: None,
@@ -143,11 +143,12 @@ def inside_intervals(
     def keep(chunk: tuple[int, NDArray[np.intp]]) -> InsideIntervals:
         axis, rays = chunk
         segments = divide_rays(hits[axis], axis, resolution, rays, beyond_hits[axis])
-        w = winding_numbers.at_midpoints(segments)
-        return segments.intervals(w >= winding_threshold)
+        # The winding number w, or tau + floor(w - tau): either is at least tau where the other is.
+        floored_w = winding_numbers.at_midpoints(segments)
+        return segments.intervals(floored_w >= tau)
 
     def keep_gaps(axis: int) -> InsideIntervals:
-        return gap_intervals(hits[axis], gaps[axis] >= winding_threshold, resolution)
+        return gap_intervals(hits[axis], gaps[axis] >= tau, resolution)
 
     gaps = [winding_numbers.in_gaps(axis) for axis in range(3)]
     if gaps[0] is not None:

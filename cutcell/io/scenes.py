@@ -6,8 +6,8 @@ A scene comes as arrays by name. Of k nodes, the root being the first: `node_nam
 `mesh_names[K]`, `mesh_nodes[K]`, `mesh_K_vertices` (n, 3), `mesh_K_faces` (m, 3),
 `mesh_K_place` (4, 4) from its vertices to its node, and if it is skinned `mesh_K_joints` (j,
 nodes), `mesh_K_inverse` (j, 4, 4) and its weights as `mesh_K_rows`, `_columns` and `_values`. Of
-clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `PATHS`) and
-number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
+clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `SCENE_CHANNELS`)
+and number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
 `mesh_K_dropped` names what of a mesh is not read. `scene_surfaces` says what may be there of
 materials and corners.
 """
@@ -34,8 +34,8 @@ from .gltf.read.read import read_rig
 from .materials.surfaces import scene_surfaces
 from .skeletons import SkeletonFile, of_document
 
-WEIGHTS = ("columns", "values")
-PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
+SCENE_WEIGHTS = ("columns", "values")
+SCENE_CHANNELS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
 """Most influences of a vertex; sixteen sets of glTF hold them."""
 
@@ -138,7 +138,7 @@ class _SceneBuilder(GltfBuilder):
         end = 0
         for clip, node, path, count in scene["tracks"].tolist():
             keys = scene["keys"][end : (end := end + count)]
-            name, width = PATHS[path]
+            name, width = SCENE_CHANNELS[path]
             times = self.floats(keys[:, :1], target=None, bounds=True)
             self.add_track(clips[clip], node, name, times, keys[:, 1 : 1 + width])
         if clips:
@@ -146,11 +146,11 @@ class _SceneBuilder(GltfBuilder):
 
 
 FBX_BINARY = b"Kaydara FBX Binary"
-SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
-MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
+FBX_MIN_SECONDS, FBX_SECONDS_A_MEGABYTE = 60.0, 5.0
+FBX_MIN_MEMORY, FBX_MEMORY_A_BYTE = 2**30, 100
 """Limits of the FBX reader. A byte of text takes some 20; arrays may be packed."""
 USD_SECONDS, USD_MEMORY = 120.0, 2**32
-READ = {
+SCENE_PARTS = {
     "FBX": "meshes, skeleton, weights and clips",
     "USD": "meshes, skeletons, weights and motion",
 }
@@ -161,9 +161,9 @@ def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
     scene = scene_arrays(path, kind)
     document, world = scene_document(scene, path, f"cutcell, from {kind}")
     lost = (
-        f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {READ[kind]} are read, with normals, "
-        "texture coordinates, and of its materials the base colours with their images; it is saved "
-        "as a GLB without what else its materials have"
+        f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {SCENE_PARTS[kind]} are read, with "
+        "normals, texture coordinates, and of its materials the base colours with their images; "
+        "it is saved as a GLB without what else its materials have"
     )
     dropped = _dropped(scene)
     lost += "; not read: " * bool(dropped)
@@ -195,8 +195,8 @@ def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
                 "is not an FBX file: neither binary nor text in its first lines says so"
             )
         job, extra = {"data": np.frombuffer(data, np.uint8)}, "cutcell"
-        seconds = SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
-        memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
+        seconds = FBX_MIN_SECONDS + FBX_SECONDS_A_MEGABYTE * len(data) / 2**20
+        memory = FBX_MIN_MEMORY + FBX_MEMORY_A_BYTE * len(data)
     task, who = f"cutcell.isolated.{kind.lower()}:read", f"the {kind} reader"
     try:
         return run_isolated(task, job, seconds, who, memory, extra)

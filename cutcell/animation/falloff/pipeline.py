@@ -21,7 +21,7 @@ from .garments import drape
 from .rigid_accessories import attach_accessories
 from .surface_operators import SurfaceOperators, surface_of
 
-TAIL = 0.05
+WEIGHT_FLOOR = 0.05
 """Part of a vertex's largest weight that is subtracted from all its weights, so that they end."""
 
 
@@ -84,6 +84,6 @@ class RigFalloff:
 
 def without_tail(weights: csr_array) -> csr_array:
     """Subtract a part of each vertex's largest weight from all of them."""
-    tail = TAIL * weights.max(axis=1).toarray()
+    tail = WEIGHT_FLOOR * weights.max(axis=1).toarray()
     weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
     return scaled(weights, 1 / weights.sum(axis=1))

@@ -17,7 +17,7 @@ from ..container import Document
 from ..nodes import Nodes, compose, node_shifts, target_of
 from .accessors import Accessor, find_accessor, read_accessor
 
-FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
+CLIP_RATE, MAX_FRAMES = 30, 3600
 """Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
@@ -25,7 +25,7 @@ MAX_MATRICES, LEVEL = 2**22, 100
 """Matrices in all frames, and the cost of a level of the hierarchy besides its own: a
 chain of thousands of nodes is shown by fewer frames, too."""
 
-PATHS = ("translation", "rotation", "scale")
+CHANNEL_PATHS = ("translation", "rotation", "scale")
 
 
 def read_clips(
@@ -104,7 +104,7 @@ class Channels:
         if self.duration <= 0:
             return np.zeros(1)
         cost = len(self.tree.parents) + LEVEL * len(self.tree.levels) / self._step
-        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, MAX_FRAMES, MAX_MATRICES / cost)
+        frames = min(self.duration * CLIP_RATE + 1e-6, MAX_FRAMES, MAX_MATRICES / cost)
         return np.linspace(0, self.duration, max(math.floor(frames), 1) + 1)
 
     @property
@@ -148,7 +148,7 @@ def _tracks(
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
-        if node not in place or path not in PATHS:
+        if node not in place or path not in CHANNEL_PATHS:
             if path == "translation":
                 find_accessor(document, sampler.get("output"), "VEC3", label)
                 if node is not None:
@@ -192,7 +192,7 @@ class _Subtree:
         order = np.array(subtree)[by_depth].tolist()
         self.place = {node: k for k, node in enumerate(order)}
         self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in order])
-        self.rest = {path: getattr(nodes, path)[order] for path in PATHS}
+        self.rest = {path: getattr(nodes, path)[order] for path in CHANNEL_PATHS}
         self.local = nodes.local[order]
         deeper = np.flatnonzero(np.diff(depth[by_depth])) + 1
         self.levels = np.split(np.arange(len(order)), deeper)
@@ -224,7 +224,7 @@ class _Subtree:
             posed[track.path][:, nodes] = track.at(seconds)
             moved[nodes] = True
         world = np.tile(self.local, (count, 1, 1, 1))
-        world[:, moved] = compose(*(posed[path][:, moved] for path in PATHS))
+        world[:, moved] = compose(*(posed[path][:, moved] for path in CHANNEL_PATHS))
         world[..., :3, 3] += self.shift
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]
