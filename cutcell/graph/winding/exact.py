@@ -22,7 +22,7 @@ from ...errors import ParameterError
 from ...geometry.sorting import sort_by_group
 from ...geometry.weld import weld
 from ...rig import TriangleMesh
-from ...runtime.compiled import compiled, no_refcount
+from ...runtime.compiled import compiled, inlined, no_refcount
 from ...runtime.threads import in_threads, parts
 from ..lattice import Lattice
 from ..rays import column_span, edge_height, height_between
@@ -187,7 +187,7 @@ def _boundary_angle(vertices, boundary, pu, pv, height):
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@compiled(inline="always")
+@inlined
 def _relative(vertices, a, pu, pv, height):
     """Return u and v of a vertex relative to the ray's start, and |a| + a.d."""
     u, v, w = vertices[a, 0] - pu, vertices[a, 1] - pv, vertices[a, 2] - height

@@ -38,7 +38,7 @@ def expand(clusters, place, reach, tolerance):
     far, near = np.zeros(EXPANSION_SIZE), np.empty(len(clusters.start) - 1, np.int32)
     ball = tuple(place), reach
     count = add_far_clusters(clusters, np.array([ROOT], np.int32), far, near, *ball)
-    add_clusters(clusters, near[:count], far, *ball, tolerance, np.empty(WORKSPACE))
+    add_clusters(clusters, near[:count], far, *ball, tolerance)
     return far
 
 

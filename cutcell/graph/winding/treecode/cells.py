@@ -39,7 +39,6 @@ from .expansion import (
     translate,
     variation,
 )
-from .solid_angles import WORKSPACE
 
 BLOCK_CELLS = 8
 """Cells along the side of the blocks that are either constant or classified cell by cell."""
@@ -47,7 +46,7 @@ CONSTANT = -(1 << 20)
 """A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
 AMBIGUOUS = 1 << 30
 """The class of blocks that are to be halved, or that have point queries."""
-LARGEST = 32
+CUBE_CELLS = 32
 """Cells along the side of the cubes that are classified in parallel, at most."""
 SMALLEST = 2
 """Cells along the side of blocks that are not halved: the queries are no dearer."""
@@ -74,8 +73,9 @@ class CellClasses(NamedTuple):
     Parameters
     ----------
     coarse : array, shape (b, b, b), int32
-        The class of each block of BLOCK^3 cells if it is constant; else the block's row of `fine`.
-    fine : array, shape (u, BLOCK, BLOCK, BLOCK), int32
+        The class of each block of BLOCK_CELLS^3 cells if it is constant; else the block's row of
+        `fine`.
+    fine : array, shape (u, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), int32
         The class of each cell.
     expansions : LocalExpansions
         Of ambiguous cells.
@@ -96,7 +96,7 @@ def classify_cells(
     blocks = -(-resolution // BLOCK_CELLS)
     coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(tau)), np.int32)
     top = BLOCK_CELLS
-    while 4 * top < resolution and top < LARGEST:
+    while 4 * top < resolution and top < CUBE_CELLS:
         top *= 2
     along = np.arange(0, resolution if len(clusters.apex) else 0, top)
     corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
@@ -147,13 +147,12 @@ class _Scratch(NamedTuple):
     waiting : array, shape (8 DEPTH, 5), int64
         Corner, size and depth.
     centre : array, shape (DEPTH, 3)
-    far : array, shape (DEPTH, SIZE)
+    far : array, shape (DEPTH, EXPANSION_SIZE)
         The expansion of far clusters.
     near : array, shape (DEPTH, m), int32
         The first nears[i] entries are the near clusters.
     nears : array, shape (DEPTH,), int64
-    local : array, shape (SIZE,)
-    point : array, shape (WORKSPACE,)
+    local : array, shape (EXPANSION_SIZE,)
     """
 
     waiting: NDArray[np.int64]
@@ -162,7 +161,6 @@ class _Scratch(NamedTuple):
     near: NDArray[np.int32]
     nears: NDArray[np.int64]
     local: NDArray[np.float64]
-    point: NDArray[np.float64]
 
 
 def _scratch(leaves: int) -> _Scratch:
@@ -170,7 +168,7 @@ def _scratch(leaves: int) -> _Scratch:
     near[0, 0] = ROOT
     return _Scratch(
         np.empty((8 * DEPTH, 5), np.int64), np.zeros((DEPTH, 3)), np.zeros((DEPTH, EXPANSION_SIZE)),
-        near, np.ones(DEPTH, np.int64), np.empty(EXPANSION_SIZE), np.empty(WORKSPACE),
+        near, np.ones(DEPTH, np.int64), np.empty(EXPANSION_SIZE),
     )  # fmt: skip
 
 
@@ -184,7 +182,7 @@ def _classify(
     expansions that these name: coefficients, centre, COUNT; and the near clusters. Returns how many
     there are of each.
     """
-    waiting, centre, far, near, nears, local, point = scratch
+    waiting, centre, far, near, nears, local = scratch
     rows = stored = listed = 0
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = corner[0], corner[1], corner[2]
     waiting[0, 3], waiting[0, 4] = top, 1
@@ -206,7 +204,7 @@ def _classify(
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, SPLIT_ERROR, point)
+        add_clusters(clusters, close, local, q, reach, SPLIT_ERROR)
         cell_class = _class_of(local, half, size, tau)
         a, b, c = x // BLOCK_CELLS, y // BLOCK_CELLS, z // BLOCK_CELLS
         if size >= BLOCK_CELLS and cell_class < 0:

@@ -21,8 +21,9 @@ from .solid_angles import (
     SIMD_WIDTH,
     VALUE,
     WORKSPACE,
+    Y,
+    Z,
     caps_winding_numbers,
-    load,
 )
 
 FIRST_TOLERANCE, LAST_TOLERANCE = 1e-2, 1e-9
@@ -118,5 +119,5 @@ def _load(which, points, workspace):
     filled = -(-count // SIMD_WIDTH) * SIMD_WIDTH
     for i in range(filled):
         q = which[min(i, count - 1)]
-        load(workspace, i, points[q, 0], points[q, 1], points[q, 2])
+        workspace[i], workspace[Y + i], workspace[Z + i] = points[q, 0], points[q, 1], points[q, 2]
     return filled, (x, y, z), reach

@@ -36,7 +36,9 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, np.int64(0)
-    begin_sum(points, count)
+    for i in range(count):
+        points[VALUE + i] = points[IM + i] = 0.0
+        points[RE + i] = points[CLEAR + i] = 1.0
     for top in among:
         k = np.int64(top)
         end = next_cluster(k)
@@ -52,31 +54,11 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    unscaled = _add_cap(rim, clusters.apex[loop], points, count, unscaled)
             k = next_cluster(k)
     for i in range(count):
-        points[VALUE + i] = value_of(points, i)
+        points[VALUE + i] += np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
     return error
-
-
-@no_refcount
-def load(points, i, x, y, z):
-    """Write point i of a workspace."""
-    points[i], points[Y + i], points[Z + i] = x, y, z
-
-
-@no_refcount
-def begin_sum(points, count):
-    """Begin to sum winding numbers at the first `count` points of a workspace."""
-    for i in range(count):
-        points[VALUE + i] = points[IM + i] = 0.0
-        points[RE + i] = points[CLEAR + i] = 1.0
-
-
-@no_refcount
-def value_of(points, i):
-    """Return the sum at a point."""
-    return points[VALUE + i] + np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
 
 
 @vectorized
@@ -93,7 +75,7 @@ def _add_cluster(moments, sphere, points, count):
 
 
 @no_refcount
-def add_cap(rim, apex, points, count, unscaled):
+def _add_cap(rim, apex, points, count, unscaled):
     """Add the solid angles of one cap.
 
     Half the solid angle of a triangle is the argument of a complex number (van Oosterom &

@@ -29,7 +29,7 @@ from .queries import winding_numbers_of_caps
 
 DECIDED = -1
 BITS = BLOCK_CELLS.bit_length() - 1
-"""log2 of BLOCK."""
+"""log2 of BLOCK_CELLS."""
 
 
 class TreecodeWindingNumbers:
@@ -57,6 +57,8 @@ class TreecodeWindingNumbers:
             np.append(0.0, np.cumsum(along.sign, dtype=np.float64)) for along in hits
         ]
         self._hits = hits
+        if surface.is_closed and tau > 0:
+            return
         caps = smallest_caps(surface.vertices, surface.boundary)
         report(0.1)
         self._cap_hits = cast_all_rays(
@@ -67,11 +69,16 @@ class TreecodeWindingNumbers:
             self._clusters, surface.resolution, tau, share_of(report, 0.4, 1)
         )
 
+    def in_gaps(self, axis: int) -> NDArray[np.float64] | None:
+        """Return the winding number before each hit, (c,), of a closed mesh, see `segments`."""
+        if not self._surface.is_closed or self._tau <= 0:
+            return None
+        start, crossings = self._hits[axis].start, self._crossings[axis]
+        return crossings[start[1:]].repeat(np.diff(start)) - crossings[:-1]
+
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """Return which lattice points may be inside before a ray's first hit or beyond its last."""
         resolution, coarse = self._surface.resolution, self._classes.coarse
-        if self._surface.is_closed and self._tau > 0:
-            return np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
         may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
         first = BLOCK_CELLS * may_be_inside.argmax(axis=2)
         last = BLOCK_CELLS * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
@@ -89,8 +96,6 @@ class TreecodeWindingNumbers:
         """Return floored_w where no query is needed, else w; shape (s,)."""
         axis, ray, gap = segments.axis, segments.ray, segments.gap
         start, crossings = self._hits[axis].start, self._crossings[axis]
-        if self._surface.is_closed:
-            return crossings[start[1:]].take(ray) - crossings.take(gap)
         caps = self._cap_hits[axis]
         floored_w, row = _by_class(
             (axis, segments.resolution, ray, gap, segments.middle),
