@@ -4,7 +4,7 @@ import numpy as np
 
 from cutcell.editing.symmetry import (
     JOINT_TOLERANCE,
-    MIN_SHARE,
+    MIN_MIRRORED,
     Mirror,
     mesh_diagonal,
     mirror_planes,
@@ -32,7 +32,7 @@ def joint_mirror(rig: Rig) -> Mirror:
         if score > share:
             share, matched = score, float((joint >= 0).mean())
             best = with_set_pairs(rig, axis, position, np.empty(0, np.intp), joint)
-    if best is None or matched < MIN_SHARE:
+    if best is None or matched < MIN_MIRRORED:
         raise SkeletonError(
             f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
             "joints have a partner on the other side"

@@ -15,10 +15,10 @@ from ..animation.bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_
 from ..bones.bones import Bones, Sources, bone_samples, bone_segments
 from ..bones.nearest import NodeGrid
 from ..geometry.segments import distance_to_segment
-from ..geometry.sparse_rows import from_dense, least
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Skeleton
+from ..rig.rows import from_dense, least
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import submit
 from .shortest_paths import shortest_paths

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled, no_refcount
+from ..runtime.compiled import inlined, no_refcount
 from .sorting import sort_by_group
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
@@ -112,7 +112,7 @@ def _list_hits(vertices, faces, points, start, columns, f, face, line, ahead, si
     return count, f
 
 
-@compiled(inline="always")
+@inlined
 def _cell(coordinate, columns):
     return min(max(int(coordinate * columns), 0), columns - 1)
 
@@ -140,7 +140,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@no_refcount
+@inlined
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its left end.
 
@@ -153,7 +153,7 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@no_refcount
+@inlined
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)

@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.line_hits import AXES, FLIP, column_span, height_between
-from ..geometry.triangles import normals
-from ..runtime.compiled import compiled, no_refcount
+from ..geometry.vectors import triangle_normal
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 
-CONTACT = 1e-9
+CONTACT_DISTANCE = 1e-9
 """Distance of two faces that touch, at most: above rounding."""
 MANY_HITS = 64
 """Rays with more hits are sorted by numpy."""
-BUFFER = 2**14
+FIRST_HITS = 2**14
 """Hits for which memory is taken at first; it is doubled when needed."""
 
 
@@ -56,7 +56,7 @@ def cast_rays(
     Shapes: vertices (n, 3), faces (m, 3).
     """
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
-    at, hits, size, face = np.empty(BUFFER), np.empty((BUFFER, 3), np.int32), 0, 0
+    at, hits, size, face = np.empty(FIRST_HITS), np.empty((FIRST_HITS, 3), np.int32), 0, 0
     while True:
         face, size = _rasterise(projected, faces, resolution, FLIP[axis], face, size, at, hits)
         if face == len(faces):
@@ -93,7 +93,9 @@ def part_at_contacts(hits: RayHits, part: NDArray[np.int32]) -> RayHits:
     """
     ray = np.repeat(np.arange(len(hits.start) - 1), np.diff(hits.start))
     of, sign, triangle = part[hits.triangle], hits.sign.copy(), hits.triangle.copy()
-    is_contact = (np.diff(hits.position) <= CONTACT) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    is_contact = (
+        (np.diff(hits.position) <= CONTACT_DISTANCE) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    )
     is_contact &= (of[1:] != of[:-1]) & (of[1:] >= 0) & (of[:-1] >= 0)
     k = np.flatnonzero(is_contact)
     for column in (sign, triangle):
@@ -105,7 +107,7 @@ def expected_hits(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
 ) -> float:
     """Estimate how many hits the rays along x, y and z have: R^2 times projected areas."""
-    return resolution**2 * float(np.abs(normals(vertices[faces])).sum()) / 2
+    return resolution**2 * _projected_area(vertices, faces)
 
 
 def points_on_rays(
@@ -123,7 +125,7 @@ def points_on_rays(
     return points
 
 
-@no_refcount
+@inlined
 def in_space(axis, u, v, along):
     """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""
     if axis == 0:
@@ -159,6 +161,17 @@ def _rasterise(vertices, faces, resolution, flip, face, size, at, hits):
 
 
 @no_refcount
+def _projected_area(vertices, faces):
+    """Sum the areas of all triangles projected along x, along y and along z."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        normal = triangle_normal(a, b, c)
+        total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
+    return total / 2
+
+
+@no_refcount
 def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
     """Sort hits by ray and along it, but for rays with many; `cursor` begins as `start` does."""
     for k in range(len(hits)):
@@ -179,7 +192,7 @@ def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
             position[k], triangle[k], sign[k] = p, t, s
 
 
-@no_refcount
+@inlined
 def first_at_least(coordinate, resolution):
     """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
     i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
@@ -190,7 +203,7 @@ def first_at_least(coordinate, resolution):
     return i
 
 
-@compiled(inline="always")
+@inlined
 def _after(position0, sign0, triangle0, position1, sign1, triangle1):
     if position0 != position1:
         return position0 > position1

@@ -14,7 +14,7 @@ from ..errors import MeshError
 from ..geometry.weld import weld
 from ..geometry.welded import WeldedMesh
 from ..runtime.repr import Summarized
-from .checks import LARGEST, as_array, check_finite, check_positions, frozen
+from .checks import MAX_COORDINATE, as_array, check_finite, check_positions, frozen
 
 COUNTS = ("welded", "vertices")
 
@@ -124,10 +124,10 @@ class TriangleMesh(Summarized):
         check_positions(self.vertices, "vertex", MeshError)
         low, high = self.bounds
         size = float((high - low).max())
-        if size * LARGEST < 1:
+        if size * MAX_COORDINATE < 1:
             raise MeshError(
                 f"the mesh is only {size:.3g} long, too small to compute with (the limit is "
-                f"{1 / LARGEST:g}); scale the whole character up"
+                f"{1 / MAX_COORDINATE:g}); scale the whole character up"
             )
         return UnitCube(low, size, (1 - (high - low) / size) / 2)
 

@@ -16,7 +16,7 @@ from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..rig.rows import rows_of_entries, scaled, single, with_data, with_rows
+from ..rig.rows import rows_of_entries, scaled, single, to_dense, with_data, with_rows
 from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
 from .prune import prune
@@ -76,7 +76,7 @@ def skinning_weights(
         )
 
     if allowed is not None:
-        deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
+        deform = np.isin(np.arange(distances.rows.shape[1]), distances.bones.joint)
         allowed = check_allowed(distances.graph, deform, allowed)
     steps = weight_steps(distances, method, allowed, adjustments, progress=progress)
     return last_of(steps).toarray()
@@ -90,7 +90,7 @@ class WeightStep(NamedTuple):
     welded: bool = False
 
 
-LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
+LIMIT_LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
 """Labels of the steps after the falloff."""
 
 
@@ -154,7 +154,7 @@ def equation_1(
     Shapes: allowed (n, j); returns (n, j) with `allowed`, else (k, j) of welded vertices.
     """
     assert method.alpha is not None
-    distance = distances.at_welded if allowed is None else distances.joint
+    distance = to_dense(distances.rows).T if allowed is None else distances.joint
     if adjustments is not None:
         distance = distance / adjustments.gain[:, None]
     return csr_array(paper_kernel(distance, distances.graph.lattice.diagonal, method.alpha))
@@ -210,6 +210,6 @@ def keep_strongest(
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not depend on their numbers."""
-    positions = np.full((len(distances.at_welded), 3), np.inf)
+    positions = np.full((distances.rows.shape[1], 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
     return distances.graph.lattice.order(positions)

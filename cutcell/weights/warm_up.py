@@ -88,7 +88,7 @@ def _bind_small() -> None:
             distances = bone_distances(graph, chain(), method=method, leaf="fit", within=within)
         for method in methods:
             skinning_weights(distances, method=method)
-        every = np.ones(distances.joint.shape[::-1], bool)
+        every = np.ones((len(distances.fallback), distances.rows.shape[1]), bool)
         skinning_weights(distances, method=method, allowed=every)
 
 

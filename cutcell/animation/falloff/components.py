@@ -12,9 +12,9 @@ from ...runtime.threads import in_threads
 
 POINTS = 9
 """Samples along each bone."""
-SMALL = 0.25
+MAX_RIGID_SIZE = 0.25
 """Maximum size of rigid accessories and components of one joint, as part of the longest side."""
-INSIDE = 0.5
+INSIDE_SHARE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 
 
@@ -33,7 +33,7 @@ def bone_containment(mesh: WeldedMesh, bones: Bones) -> NDArray[np.float64]:
     which = mesh.component[mesh.faces[face, 0]]
     key, number = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
     # Each hit belongs to the ray up or to the ray down, one of six.
-    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE - 1e-9
+    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE_SHARE - 1e-9
     containment = np.zeros((len(mesh.longest_sides), len(bones.joint)))
     inside_of, bone = key[inside] // len(samples), key[inside] % len(samples) // POINTS
     np.add.at(containment, (inside_of, bone), 1 / POINTS)

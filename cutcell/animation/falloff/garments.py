@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from ...graph import CutCellGraph
 from ...rig.rows import scaled, with_rows
-from .components import SMALL
+from .components import MAX_RIGID_SIZE
 from .containment import ramp
 from .diffusion import Diffusion
 from .rigid_accessories import nearest_on_body
@@ -16,7 +16,7 @@ from .rigid_accessories import nearest_on_body
 OF_BODY = 0.4, 0.6
 """A component is a garment if joints with bones in the body have the second part of its weight;
 less and less so down to the first. A wing that is one sheet has its own bones beside the body."""
-IN_BODY = 0.5
+IN_COMPONENT = 0.5
 """Part of such a bone that is inside a component."""
 
 
@@ -33,8 +33,8 @@ def drape(
     """
     surface, component, areas = graph.mesh, graph.mesh.component, graph.mesh.areas
     has_bones = np.asarray(containment.max(axis=1) > 0)
-    is_garment = ~has_bones & ~independent & (surface.longest_sides > SMALL)
-    of_body = areas * (weights @ (containment.max(axis=0) >= IN_BODY))
+    is_garment = ~has_bones & ~independent & (surface.longest_sides > MAX_RIGID_SIZE)
+    of_body = areas * (weights @ (containment.max(axis=0) >= IN_COMPONENT))
     part = np.bincount(component, of_body) / np.maximum(np.bincount(component, areas), 1e-300)
     follows = np.where(is_garment, ramp(part, *OF_BODY), 0)[component]
     garment = np.flatnonzero(follows)

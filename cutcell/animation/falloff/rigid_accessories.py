@@ -10,10 +10,10 @@ from ...bones.nearest import NodeGrid
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig.rows import scaled, single, strongest, with_rows
-from .components import SMALL
+from .components import MAX_RIGID_SIZE
 from .containment import ramp
 
-CONTACT = 1.0
+CONTACT_CELLS = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
 than at its nearest vertex."""
 DOMINANT = 0.6, 0.65
@@ -36,7 +36,7 @@ def attach_accessories(
     component, areas = graph.mesh.component, graph.mesh.areas
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
-    is_small = graph.mesh.longest_sides <= SMALL
+    is_small = graph.mesh.longest_sides <= MAX_RIGID_SIZE
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
@@ -63,7 +63,9 @@ def attach(
     label = component[attached]
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
-    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution + TIE)
+    touching = np.flatnonzero(
+        distance <= least[label] + CONTACT_CELLS / graph.lattice.resolution + TIE
+    )
     rows = _contact_weights(
         (mean @ weights)[touching],
         areas[attached[touching]] + 1e-12,

@@ -13,7 +13,7 @@ from ...geometry.welded import WeldedMesh
 from ...runtime.compiled import compiled
 
 NONE = -1
-SAME = 0.99
+SAME_NORMAL = 0.99
 """Cosine between the normals of duplicate faces, at least."""
 
 
@@ -71,7 +71,7 @@ def _without_duplicates(mesh: WeldedMesh) -> NDArray[np.int32]:
     corners = mesh.points[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
     pairs = normals(corners)
     sizes = np.linalg.norm(pairs, axis=2).prod(axis=0)
-    same = np.einsum("ij,ij->i", *pairs) > SAME * sizes
+    same = np.einsum("ij,ij->i", *pairs) > SAME_NORMAL * sizes
     partner = partner.copy()
     partner[half_edge[same]] = NONE
     return partner

@@ -13,7 +13,7 @@ from cutcell.animation.any_angle.wavefront import partition_sources
 from cutcell.bones.nearest import NodeGrid
 from cutcell.geodesics.solver import find_sources
 from cutcell.geometry.segments import distance_to_segment
-from cutcell.geometry.sparse_rows import to_dense
+from cutcell.rig.rows import to_dense
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.bars import fork

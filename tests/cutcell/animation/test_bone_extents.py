@@ -1,5 +1,6 @@
 """Bones end where the body and the chain of joints say."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -292,3 +293,16 @@ def test_a_head_goes_on_past_its_face(face, is_child):
     # Without such names a joint beside ends it, and children continue it.
     plain = ["root", "neck", "head", "a", "b"][: len(names)]
     assert (ends(graph, Skeleton([*spine, *places], parents, plain), 2)[:, 2] < 0.8).all()
+
+
+def test_a_long_list_of_joints_without_a_tree_takes_little_memory():
+    count = 300
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 16, connectivity="any")
+    places = np.random.default_rng(1).uniform(0.3, 0.7, (count, 3))
+    grid = NodeGrid.of(graph)
+    fit_bones(graph, Skeleton(places[:9], [-1] * 9), grid)
+    tracemalloc.start()
+    fit_bones(graph, Skeleton(places, [-1] * count), grid)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 20e6  # a float for each of 17 points between any two joints takes 36 MB

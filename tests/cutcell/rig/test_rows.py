@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutcell.geometry import sparse_rows
+from cutcell.rig import rows as sparse_rows
 
 
 @pytest.fixture(params=[0.0, 0.4, 1.0])
