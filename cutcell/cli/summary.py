@@ -16,9 +16,9 @@ from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig import Rig, TriangleMesh
 from ..runtime.display import count
 
-KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
+GRAPH_KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 """Name of each kind of node and edge."""
-MAX_NAMES = 12
+ROW_NAMES = 12
 """Maximum number of names in one row; `--json` lists all."""
 
 
@@ -104,7 +104,7 @@ def summarize_weights(weights: NDArray[np.float64]) -> dict[str, float]:
 
 
 def _by_kind(kinds: NDArray[np.uint8]) -> dict[str, int]:
-    counts = {name: int((kinds == code).sum()) for name, code in KINDS.items()}
+    counts = {name: int((kinds == code).sum()) for name, code in GRAPH_KINDS.items()}
     return counts | {"total": len(kinds)}
 
 
@@ -152,9 +152,9 @@ def _part_rows(meshes: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[tu
 def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
     entries = [
         item["name"] + (f" ({note})" if note else "")
-        for item, note in zip(items[:MAX_NAMES], notes, strict=False)
+        for item, note in zip(items[:ROW_NAMES], notes, strict=False)
     ]
-    more = [f"and {len(items) - MAX_NAMES} more"] if len(items) > MAX_NAMES else []
+    more = [f"and {len(items) - ROW_NAMES} more"] if len(items) > ROW_NAMES else []
     return f"{len(items):,}: " + ", ".join(entries + more)
 
 

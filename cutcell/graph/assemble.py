@@ -7,12 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.vectors import between, length
+from ..runtime.compiled import no_refcount
 from ..runtime.threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, fill_edges, lattice_steps
 from .interior import interior_points
 from .memory import check_nodes
-from .rays import RayHits, points_on_rays
+from .rays import AXES, RayHits
 from .segments import NONE, InsideIntervals
 from .surface import Surface
 
@@ -22,7 +24,7 @@ def assemble(
     hits: Sequence[RayHits],
     inside: Sequence[InsideIntervals],
     connectivity: int | str,
-    winding_threshold: float,
+    tau: float,
 ) -> CutCellGraph:
     """Build the graph of a surface from the hits of the rays and their intervals inside."""
     resolution, vertices, mesh_edges = surface.resolution, surface.vertices, surface.edges
@@ -51,26 +53,16 @@ def assemble(
         fill_edges(where, (*intervals, starts[axis]), points.table, ends, edges, lengths)
 
     def fill_surface(axis: int) -> None:
-        hit = np.flatnonzero(numbers[axis] != NONE)  # their nodes follow one another
-        if len(hit) == 0:
-            return
-        part = slice(numbers[axis][hit[0]], numbers[axis][hit[-1]] + 1)
-        ray = np.searchsorted(hits[axis].start, hit, side="right") - 1
-        triangle[part] = hits[axis].triangle[hit]
-        nodes[part] = points_on_rays(ray, hits[axis].position[hit], resolution, axis)
-        corners = surface.faces[triangle[part]]
-        first = edge + 3 * (part.start - first_surface)
-        links = slice(first, first + corners.size)
-        edges[links, 0] = np.repeat(np.arange(part.start, part.stop), 3)
-        edges[links, 1] = corners.ravel()
-        way = vertices[corners] - nodes[part, None]
-        lengths[links] = np.linalg.norm(way, axis=2).ravel()
+        along = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
+        mesh = vertices, surface.faces
+        first = first_surface, edge
+        _fill_surface(resolution, AXES[axis], along, mesh, first, nodes, triangle, edges, lengths)
 
     def fill_rest(_: int) -> None:
         first_inside = len(mesh_edges)
         nodes[: len(vertices)], edges[:first_inside] = vertices, mesh_edges
         lengths[:first_inside] = np.linalg.norm(np.subtract(*vertices[mesh_edges.T]), axis=1)
-        nodes[len(vertices) : first_surface] = points.positions()
+        points.put_positions(nodes[len(vertices) : first_surface])
 
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
@@ -96,7 +88,7 @@ def assemble(
         interior=points,
         inverted=surface.inverted,
         omitted=surface.omitted,
-        winding_threshold=winding_threshold,
+        winding_threshold=tau,
     )
 
 
@@ -114,3 +106,26 @@ def _number_ends(
     node = np.full(hits, NONE, np.int32)
     node[ends] = np.arange(first, first + len(ends))
     return node
+
+
+@no_refcount
+def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, lengths):
+    """Fill in the surface nodes along one axis, and their edges to the corners of triangles."""
+    u, v, along = axes
+    start, position, of_triangle, node = hits
+    vertices, faces = mesh
+    first_surface, first_edge = first
+    for ray in range(resolution * resolution):
+        for c in range(start[ray], start[ray + 1]):
+            n = node[c]
+            if n == NONE:
+                continue
+            nodes[n, u] = (ray // resolution + 0.5) / resolution
+            nodes[n, v] = (ray % resolution + 0.5) / resolution
+            nodes[n, along] = position[c]
+            triangle[n] = of_triangle[c]
+            for k in range(3):
+                e = first_edge + 3 * (n - first_surface) + k
+                corner = faces[of_triangle[c], k]
+                edges[e, 0], edges[e, 1] = n, corner
+                lengths[e] = length(between(nodes[n], vertices[corner]))

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import no_refcount
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.threads import in_threads
-from .rays import in_space, points_on_rays
+from .rays import in_space
 from .segments import InsideIntervals
 
 OUTSIDE = -1
@@ -50,13 +50,14 @@ class InteriorPoints:
         """The arrays that `point_number` takes."""
         return self.start, self.first, self.last, self.number
 
-    def positions(self) -> NDArray[np.float64]:
-        """Return the positions of the points in the unit cube, shape (len, 3)."""
+    def put_positions(self, out: NDArray[np.float64]) -> None:
+        """Write the positions of the points in the unit cube into an array (len, 3)."""
         count = self.last - self.first + 1
-        z = np.arange(len(self)) + np.repeat(self.first - self.number[:-1], count)
         column = np.repeat(np.arange(self.resolution**2), np.diff(self.start))
-        position = (z + 0.5) / self.resolution
-        return points_on_rays(np.repeat(column, count), position, self.resolution, 2)
+        out[:, 0] = np.repeat((column // self.resolution + 0.5) / self.resolution, count)
+        out[:, 1] = np.repeat((column % self.resolution + 0.5) / self.resolution, count)
+        z = np.arange(len(self)) + np.repeat(self.first - self.number[:-1], count)
+        out[:, 2] = (z + 0.5) / self.resolution
 
 
 def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> InteriorPoints:
@@ -93,7 +94,7 @@ def _number_stretches(
     return InteriorPoints(resolution, start, first, last, number)
 
 
-@no_refcount
+@inlined
 def point_number(start, first, last, number, column, z):
     """Return the number of the point at z in a column, or OUTSIDE."""
     for s in range(start[column], start[column + 1]):
@@ -102,7 +103,7 @@ def point_number(start, first, last, number, column, z):
     return np.int64(OUTSIDE)
 
 
-@no_refcount
+@inlined
 def point_on_ray(axis, ray, k, resolution):
     """Return column and z of the lattice point k on a ray."""
     x, y, z = in_space(axis, ray // resolution, ray % resolution, k)

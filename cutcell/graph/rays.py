@@ -20,19 +20,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.triangles import normals
-from ..runtime.compiled import compiled, no_refcount
+from ..geometry.vectors import triangle_normal
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
-CONTACT = 1e-9
+CONTACT_DISTANCE = 1e-9
 """Distance of two faces that touch, at most: above rounding."""
 MANY_HITS = 64
 """Rays with more hits are sorted by numpy."""
-BUFFER = 2**14
+FIRST_HITS = 2**14
 """Hits for which memory is taken at first; it is doubled when needed."""
 
 
@@ -68,7 +68,7 @@ def cast_rays(
     """
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
     flip = -1 if axis == 1 else 1  # x cross z points along -y
-    at, hits, size, face = np.empty(BUFFER), np.empty((BUFFER, 3), np.int32), 0, 0
+    at, hits, size, face = np.empty(FIRST_HITS), np.empty((FIRST_HITS, 3), np.int32), 0, 0
     while True:
         face, size = _rasterise(projected, faces, resolution, flip, face, size, at, hits)
         if face == len(faces):
@@ -105,7 +105,9 @@ def part_at_contacts(hits: RayHits, part: NDArray[np.int32]) -> RayHits:
     """
     ray = np.repeat(np.arange(len(hits.start) - 1), np.diff(hits.start))
     of, sign, triangle = part[hits.triangle], hits.sign.copy(), hits.triangle.copy()
-    is_contact = (np.diff(hits.position) <= CONTACT) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    is_contact = (
+        (np.diff(hits.position) <= CONTACT_DISTANCE) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    )
     is_contact &= (of[1:] != of[:-1]) & (of[1:] >= 0) & (of[:-1] >= 0)
     k = np.flatnonzero(is_contact)
     for column in (sign, triangle):
@@ -117,7 +119,7 @@ def expected_hits(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
 ) -> float:
     """Estimate how many hits the rays along x, y and z have: R^2 times projected areas."""
-    return resolution**2 * float(np.abs(normals(vertices[faces])).sum()) / 2
+    return resolution**2 * _projected_area(vertices, faces)
 
 
 def points_on_rays(
@@ -135,7 +137,7 @@ def points_on_rays(
     return points
 
 
-@no_refcount
+@inlined
 def in_space(axis, u, v, along):
     """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""
     if axis == 0:
@@ -171,6 +173,17 @@ def _rasterise(vertices, faces, resolution, flip, face, size, at, hits):
 
 
 @no_refcount
+def _projected_area(vertices, faces):
+    """Sum the areas of all triangles projected along x, along y and along z."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        normal = triangle_normal(a, b, c)
+        total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
+    return total / 2
+
+
+@no_refcount
 def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
     """Sort hits by ray and along it, but for rays with many; `cursor` begins as `start` does."""
     for k in range(len(hits)):
@@ -191,7 +204,7 @@ def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
             position[k], triangle[k], sign[k] = p, t, s
 
 
-@no_refcount
+@inlined
 def first_at_least(coordinate, resolution):
     """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
     i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
@@ -225,7 +238,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@no_refcount
+@inlined
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its left end.
 
@@ -238,14 +251,14 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@no_refcount
+@inlined
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
-@compiled(inline="always")
+@inlined
 def _after(position0, sign0, triangle0, position1, sign1, triangle1):
     if position0 != position1:
         return position0 > position1

@@ -14,10 +14,10 @@ from ..errors import CutcellError, FileError
 from ..runtime.writing import reason
 from .formats import BY_SUFFIX
 
-LONGEST = 200
+MAX_QUOTED = 200
 """Characters of what another library says."""
 LONGEST_SENTENCE = 1000
-LARGEST = 2**28
+MAX_FILE_BYTES = 2**28
 """Bytes of a file that another one names."""
 
 
@@ -69,7 +69,7 @@ def read_bytes(path: Path, most: int | None = None) -> bytes:
 def one_line(error: Exception) -> str:
     """Return what another library says of a file, as part of a sentence."""
     message = " ".join(str(error).split()) or type(error).__name__
-    return message if len(message) <= LONGEST else f"{message[:LONGEST]}..."
+    return message if len(message) <= MAX_QUOTED else f"{message[:MAX_QUOTED]}..."
 
 
 def read_text(path: Path) -> str:
@@ -80,7 +80,9 @@ def read_text(path: Path) -> str:
         raise FileError(f"{path.name}: is not a text file (byte {e.start} is not UTF-8)") from None
 
 
-def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LARGEST) -> bytes:
+def read_beside(
+    path: Path, names: Iterable[str], label: str, largest: int = MAX_FILE_BYTES
+) -> bytes:
     """Return what is in the first of some files that is there, in the folder or below it.
 
     A file may name others by their places on another machine.
@@ -204,7 +206,7 @@ def as_file(source: Input) -> Iterator[Path]:
     start = data.removeprefix(b"\xef\xbb\xbf")
     matches = {end: re.match(one.suffixes[end], start) for end, one in BY_SUFFIX.items()}
     lengths = {end: match.end() for end, match in matches.items() if match}
-    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) > STL else "")
+    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) >= STL else "")
     stem = Path(str(name).strip("<>")).stem or "bytes"
     with TemporaryDirectory() as folder:
         path = Path(folder, stem + ending)

@@ -19,13 +19,11 @@ from .gltf.container import Document
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.added_skins import has_volume
-from .gltf.read.bones import find_bones
+from .gltf.read.bones import BOX_MARGIN, find_bones
 from .gltf.read.clips import read_clips
 from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .weights import with_deform
 
-MARGIN = 0.1
-"""How far joints may lie outside of the bounding box, in diagonals of it."""
 SIMILAR = 0.5
 """The scene's places are chosen unless those in the bind space fit better than by this factor."""
 MIN_FIT = 0.2
@@ -85,7 +83,7 @@ def _fit(rig: Rig, skeleton: Skeleton) -> float:
     """Return how well joints fit a mesh: the share near it, times the ratio of sizes below one."""
     low, high = rig.mesh.bounds
     size, extent = np.linalg.norm(high - low), np.linalg.norm(np.ptp(skeleton.joints, axis=0))
-    margin = MARGIN * size
+    margin = BOX_MARGIN * size
     inside = (skeleton.joints >= low - margin) & (skeleton.joints <= high + margin)
     ratio = 1.0 if len(skeleton.joints) == 1 else min(extent, size) / max(extent, size)
     return float(inside.all(axis=1).mean() * ratio)

@@ -46,7 +46,7 @@ ANNOUNCEMENT = "Compiling, once on this machine. This takes about half a minute.
 COMPLETE, LOCK = "complete", "lock"
 """Names of the file that marks a set with all functions of a binding, and of the file that a
 process locks while it compiles them."""
-PATIENCE, POLL_EVERY = 120.0, 0.02
+PATIENCE, LOOK_EVERY = 120.0, 0.02
 """Seconds to wait for a process that compiles, and between two looks at it."""
 
 refusals: list[str] = []
@@ -121,7 +121,7 @@ def _lock(file: IO[bytes]) -> None:
         try:
             return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            time.sleep(POLL_EVERY)
+            time.sleep(LOOK_EVERY)
     return None
 
 

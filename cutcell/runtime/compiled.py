@@ -33,7 +33,16 @@ def no_refcount(function: Callable) -> Callable:
     return compiled(function, _nrt=False)
 
 
-@no_refcount
+def inlined(function: Callable) -> Callable:
+    """Compile a small function as by `no_refcount`, to be inlined by LLVM wherever it is called.
+
+    numba's own inlining would have its types inferred anew in each place, which takes longer than
+    all the rest.
+    """
+    return compiled(function, _nrt=False, forceinline=True)
+
+
+@inlined
 def copy_to(values, target):
     """Copy the entries of an array (n,) to the start of one that is at least as long.
 

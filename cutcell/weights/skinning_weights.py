@@ -90,7 +90,7 @@ class WeightStep(NamedTuple):
     welded: bool = False
 
 
-LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
+LIMIT_LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
 """Labels of the steps after the falloff."""
 
 

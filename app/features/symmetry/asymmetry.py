@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cutcell.editing.symmetry import (
-    MIN_SHARE,
+    MIN_MIRRORED,
     Mirror,
     find_mirror,
     joint_mirror,
@@ -61,7 +61,7 @@ def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
         mirror = joint_mirror(rig)
     vertices, shares = _images(rig.mesh, mirror, mesh_diagonal(rig), progress)
     part = float(shares[np.unique(rig.mesh.faces)].any(axis=1).mean())
-    if part < MIN_SHARE:
+    if part < MIN_MIRRORED:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: only {part:.0%} of its vertices have a "
             "mirror image on the surface"

@@ -12,17 +12,17 @@ from ...geometry.segments import closest_on_segment
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 
-STEP = 0.25
+RAY_STEP = 0.25
 """Lattice cells between sample points on a ray."""
 ENTRY = 5
 """Steps within which a ray must enter the body: a joint may lie slightly outside the skin."""
 AT_A_TIME = 32
 """Sample points on a ray that are tested at a time, more than `ENTRY`."""
-ALONG = np.linspace(0, 1, 17)
+SIGHT_SAMPLES = np.linspace(0, 1, 17)
 """Sample points on a segment."""
-SEEN = 0.85
+MIN_SIGHT = 0.85
 """The part of a segment that must run inside for line of sight between its ends."""
-NEARER = 0.999
+NEARER_BONE = 0.999
 """A bone is nearer than the ray's start if its distance is below this factor of the start's."""
 PAIRS = 500
 """Sample points and bones that are tested for line of sight at a time."""
@@ -67,14 +67,14 @@ class BodyProbe:
     ) -> NDArray[np.float64]:
         """Return the part of each segment (..., 3) that runs near the body, or strictly inside."""
         start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
-        points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
+        points = start[..., None, :] + SIGHT_SAMPLES[:, None] * (end - start)[..., None, :]
         return (self.inside if strictly else self.near)(points).mean(axis=-1)
 
     def exit_distance(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Compute where rays from points (p, 3) leave the body; zero if they never enter it."""
-        distance, step = np.zeros(len(start)), STEP / self.resolution
+        distance, step = np.zeros(len(start)), RAY_STEP / self.resolution
         rays = np.arange(len(start))
         for first in range(0, int(2 / step), AT_A_TIME):  # at most across the cube
             away = (first + np.arange(AT_A_TIME)) * step
@@ -107,17 +107,17 @@ class BodyProbe:
 
     def _distance_to_others(self, start, direction, limit, others):
         """Compute the same for one ray: start (3,), direction (3,), limit ()."""
-        step = 2 * STEP / self.resolution
+        step = 2 * RAY_STEP / self.resolution
         away = np.arange(1, int(limit / step) + 1) * step
         points = start + away[:, None] * direction
         nearest, _ = closest_on_segment(points[:, None], *others)
         offset = nearest - points[:, None]
-        near = (offset**2).sum(axis=2) <= ((NEARER * away) ** 2)[:, None]
+        near = (offset**2).sum(axis=2) <= ((NEARER_BONE * away) ** 2)[:, None]
         k, other = near.nonzero()
         for pairs in np.split(np.arange(len(k)), range(PAIRS, len(k), PAIRS)):
             to_other = offset[k[pairs], other[pairs], None]
-            segments = points[k[pairs], None] + ALONG[:, None] * to_other
-            sees = self.inside(segments).mean(axis=1) >= SEEN
+            segments = points[k[pairs], None] + SIGHT_SAMPLES[:, None] * to_other
+            sees = self.inside(segments).mean(axis=1) >= MIN_SIGHT
             if sees.any():
                 return away[k[pairs[sees.argmax()]]]
         return limit

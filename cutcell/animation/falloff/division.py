@@ -22,7 +22,7 @@ POWER = 30
 FACING_LEAST = 0.3
 """Surface covers the bones that it looks away from. The distance of a bone that it looks right at
 is divided by this, that of one that it looks away from by 1."""
-MIN_CELLS = 0.01
+EQUAL_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 RADIUS_FACTOR = 1.5
 """Surface that is this many times as far from a bone as the median of that bone's surface is not
@@ -32,9 +32,9 @@ MIN_RADIUS = 0.5
 CONNECTED = 0.02
 """Part of the longest side: a bone that ends this near to the start of another joint's bone leads
 on to it."""
-MANY = 200_000
+MAX_MEASURED = 200_000
 """Vertices whose distances are sorted to measure radii; of more, these are a sample."""
-MIN_SHARE = 1e-3
+OWN_SHARE = 1e-3
 """Smallest share of a joint at a vertex of that joint's surface."""
 
 
@@ -91,7 +91,7 @@ class Division:
                 np.searchsorted(bones.joint, np.arange(joints + 1)),
                 bones.start,
                 bones.end,
-                MIN_CELLS / resolution,
+                EQUAL_CELLS / resolution,
                 radius,
                 chosen,
                 share,
@@ -102,7 +102,7 @@ class Division:
         radius = _radii(weights, rows.data, surface.areas, bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
-        is_beyond = (rows.data > radius[rows.indices]) & (share > MIN_SHARE)
+        is_beyond = (rows.data > radius[rows.indices]) & (share > OWN_SHARE)
         beyond = np.bincount(rows_of_entries(rows)[is_beyond], minlength=vertices) > 0
         divide(radius, np.flatnonzero(beyond))
         return cls(surface, containment, penalty, radius, beyond, weights)
@@ -169,7 +169,9 @@ def _radii(
     Shapes: weights (k, j), distance (e,) of each entry, areas (k,).
     """
     vertex, joints = rows_of_entries(weights), weights.shape[1]
-    entry = np.flatnonzero((weights.data > MIN_SHARE) & (vertex % -(-len(areas) // MANY) == 0))
+    entry = np.flatnonzero(
+        (weights.data > OWN_SHARE) & (vertex % -(-len(areas) // MAX_MEASURED) == 0)
+    )
     vertex, joint = vertex[entry], weights.indices[entry]
     length, area = distance[entry], weights.data[entry] * (areas[vertex] + 1e-12)
     # By joint, then by length: one sort of sums takes a third of the time of two sorts.

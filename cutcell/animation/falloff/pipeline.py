@@ -21,7 +21,7 @@ from .garments import drape
 from .rigid_accessories import attach_accessories
 from .surface_operators import SurfaceOperators, surface_of
 
-TAIL = 0.05
+WEIGHT_FLOOR = 0.05
 """Part of a vertex's largest weight that is subtracted from all its weights, so that they end."""
 
 
@@ -70,7 +70,7 @@ class RigFalloff:
         yield "spread", weights
         weights = self.with_rigid_parts(weights)
         yield "rigid", weights
-        yield "tail", without_tail(weights)
+        yield "tail", subtract_floor(weights)
 
     def with_rigid_parts(self, weights: csr_array) -> csr_array:
         """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
@@ -82,8 +82,8 @@ class RigFalloff:
         return attach_accessories(graph, surface, containment, weights, independent)
 
 
-def without_tail(weights: csr_array) -> csr_array:
+def subtract_floor(weights: csr_array) -> csr_array:
     """Subtract a part of each vertex's largest weight from all of them."""
-    tail = TAIL * weights.max(axis=1).toarray()
+    tail = WEIGHT_FLOOR * weights.max(axis=1).toarray()
     weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
     return scaled(weights, 1 / weights.sum(axis=1))

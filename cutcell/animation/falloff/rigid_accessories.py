@@ -10,11 +10,11 @@ from ...bones.nearest import NodeGrid
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig.rows import scaled, single, strongest, with_rows
-from .components import SMALL, longest_sides
+from .components import MAX_RIGID_SIZE, longest_sides
 from .containment import ramp
 from .surface_operators import SurfaceOperators
 
-CONTACT = 1.0
+CONTACT_CELLS = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
 than at its nearest vertex."""
 DOMINANT = 0.6, 0.65
@@ -38,7 +38,7 @@ def attach_accessories(
     points, component, areas = surface.points, surface.component, surface.areas
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
-    is_small = longest_sides(points, component) <= SMALL
+    is_small = longest_sides(points, component) <= MAX_RIGID_SIZE
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
@@ -66,7 +66,9 @@ def attach(
     label = component[attached]
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
-    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution + TIE)
+    touching = np.flatnonzero(
+        distance <= least[label] + CONTACT_CELLS / graph.lattice.resolution + TIE
+    )
     rows = _contact_weights(
         (mean @ weights)[touching],
         areas[attached[touching]] + 1e-12,

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from ...rig.transforms import moved
 
-NEAR = 1e-3
+IN_PLACE = 1e-3
 """How far off a joint is still in its place. Lengths are in sizes of the character."""
 ORIGIN = 1e-2
 """A joint so close to the origin of its bind space may have no matrix of its own."""
-FAR, FARTHER = 0.5, 4.0
+OUT_OF_PLACE, FARTHER = 0.5, 4.0
 """A matrix of a joint's own is wrong so far off, and so many times as far as those of joints that
 hold vertices."""
-STRETCH, TURN = 0.1, 0.02
+FRAME_STRETCH, TURN = 0.1, 0.02
 """How much a frame may be stretched by a pose, and turned where there is none."""
 SOFT = 0.05
 """Distance of two positions of a character at which one counts little for the other."""
@@ -31,7 +31,7 @@ LEAN = 0.15
 """How far a posed character may stand from its topmost joint, which is seldom posed."""
 CONFIRMED = 0.05
 """A topmost joint that holds nothing is right if this part of the weight agrees with it."""
-HIDDEN = 1e-2
+HIDDEN_SCALE = 1e-2
 """A joint is hidden that is so small for the largest of its skin."""
 MAX_CANDIDATES = 256
 
@@ -71,7 +71,9 @@ class BoundSkin:
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
         self.is_held = (self.shares > 0) & ~np.isnan(self.inverse).all(axis=(1, 2))
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
-        shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
+        shows = (
+            self.is_solvable & invertible(self.skinning) & (scales > HIDDEN_SCALE * scales.max())
+        )
         trusted = self.is_held & shows
         self.is_trusted = trusted if trusted.any() else ~self.is_blank & shows
         at = self.trusted()
@@ -152,7 +154,7 @@ def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
             assert skin.stands is not None
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
-        tolerance = NEAR if is_below_good else max(SOFT, 2 * shift)
+        tolerance = IN_PLACE if is_below_good else max(SOFT, 2 * shift)
         tolerance = tolerance if skin.is_blank[k] else far
         if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shift, tolerance):
             continue
@@ -178,7 +180,7 @@ def _first_below(skin: BoundSkin) -> list[int]:
 
 def _far_limit(skin: BoundSkin, size: float, shift: float) -> float:
     """Return the distance beyond which a stored matrix of a joint is wrong."""
-    limit = max(FAR, FARTHER * shift)
+    limit = max(OUT_OF_PLACE, FARTHER * shift)
     stored = np.flatnonzero(~skin.is_held & ~skin.is_blank)
     if skin.stands is None or not len(stored):
         return limit
@@ -201,7 +203,7 @@ def _contradicts(
     change = np.linalg.solve(frame[:3, :3], bound[:3, :3])
     stretch = np.abs(np.linalg.svd(change, compute_uv=False) - 1).max()
     turn = np.abs(change - np.eye(3)).max()
-    return bool(stretch > STRETCH or (turn > TURN and shift <= ORIGIN))
+    return bool(stretch > FRAME_STRETCH or (turn > TURN and shift <= ORIGIN))
 
 
 @np.errstate(over="ignore")  # the box may have no extent
@@ -233,7 +235,7 @@ def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.f
     heaviest = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
     near = [np.exp(-apart(matrices, matrices[k], corners) / SOFT) for k in heaviest.tolist()]
     scores = np.array([(shares * one).sum() for one in near])
-    first = int(np.flatnonzero(scores >= scores.max() * (1 - NEAR))[0])
+    first = int(np.flatnonzero(scores >= scores.max() * (1 - IN_PLACE))[0])
     return matrices[heaviest[first]]
 
 

@@ -24,7 +24,7 @@ from ...errors import FileError
 from .constants import ARRAY_BUFFER, COMPONENTS, ELEMENT_ARRAY_BUFFER
 
 ALIGNMENT = 8
-KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+ACCESSOR_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ACCESSOR_KEYS = ("indices", "inverseBindMatrices", "input", "output")
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
@@ -94,7 +94,7 @@ class BufferWriter:
             byteOffset=len(content),
             componentType=CODES[values.dtype],
             count=len(values),
-            type=KINDS[values.shape[1]],
+            type=ACCESSOR_TYPES[values.shape[1]],
         )
         content += rows.tobytes()
 

@@ -31,31 +31,30 @@ from ....runtime.threads import in_threads
 from .clusters import ROOT, Clusters
 from .expansion import (
     ERROR,
-    ROUNDING,
-    SIZE,
+    EXPANSION_SIZE,
+    ROUNDING_ERROR,
     LocalExpansions,
     add_clusters,
     add_far_clusters,
     translate,
     variation,
 )
-from .solid_angles import WORKSPACE
 
-BLOCK = 8
+BLOCK_CELLS = 8
 """Cells along the side of the blocks that are either constant or classified cell by cell."""
 CONSTANT = -(1 << 20)
 """A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
 AMBIGUOUS = 1 << 30
 """The class of blocks that are to be halved, or that have point queries."""
-LARGEST = 32
+CUBE_CELLS = 32
 """Cells along the side of the cubes that are classified in parallel, at most."""
 SMALLEST = 2
 """Cells along the side of blocks that are not halved: the queries are no dearer."""
 WORTH = 20
 """Ambiguous midpoints for which it pays to halve a block."""
-TOLERANCE = 5e-3
+SPLIT_ERROR = 5e-3
 """Clusters of a larger error in a block are split."""
-COUNT = SIZE + 3
+COUNT = EXPANSION_SIZE + 3
 """The column of an expansion's row, after coefficients and centre, for the number of near
 clusters."""
 DEPTH = 12
@@ -74,8 +73,9 @@ class CellClasses(NamedTuple):
     Parameters
     ----------
     coarse : array, shape (b, b, b), int32
-        The class of each block of BLOCK^3 cells if it is constant; else the block's row of `fine`.
-    fine : array, shape (u, BLOCK, BLOCK, BLOCK), int32
+        The class of each block of BLOCK_CELLS^3 cells if it is constant; else the block's row of
+        `fine`.
+    fine : array, shape (u, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), int32
         The class of each cell.
     expansions : LocalExpansions
         Of ambiguous cells.
@@ -89,14 +89,14 @@ class CellClasses(NamedTuple):
 def classify_cells(
     clusters: Clusters,
     resolution: int,
-    winding_threshold: float,
+    tau: float,
     report: Tell = lambda done: None,
 ) -> CellClasses:
     """Bound the winding number of the caps over the cells of the lattice."""
-    blocks = -(-resolution // BLOCK)
-    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
-    top = BLOCK
-    while 4 * top < resolution and top < LARGEST:
+    blocks = -(-resolution // BLOCK_CELLS)
+    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(tau)), np.int32)
+    top = BLOCK_CELLS
+    while 4 * top < resolution and top < CUBE_CELLS:
         top *= 2
     along = np.arange(0, resolution if len(clusters.apex) else 0, top)
     corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
@@ -105,7 +105,7 @@ def classify_cells(
     def classify(corner: NDArray[np.int64]) -> list[NDArray]:
         arrays = _buffers(top)
         counts = _classify(
-            clusters, resolution, winding_threshold, corner, top, coarse, *arrays,
+            clusters, resolution, tau, corner, top, coarse, *arrays,
             _scratch(len(clusters.start) - 1),
         )  # fmt: skip
         parts = [array[:count].copy() for array, count in zip(arrays, counts, strict=True)]
@@ -123,17 +123,17 @@ def classify_cells(
         rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
-    columns = (0, SIZE), (SIZE, COUNT)
+    columns = (0, EXPANSION_SIZE), (EXPANSION_SIZE, COUNT)
     local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
     return CellClasses(coarse, fine, LocalExpansions(centre, local, start, near))
 
 
 def _buffers(top: int) -> list[NDArray]:
     """Return room for all that `_classify` may find in a cube of `top` cells."""
-    blocks, rows = (top // BLOCK) ** 3, (top // SMALLEST) ** 3
+    blocks, rows = (top // BLOCK_CELLS) ** 3, (top // SMALLEST) ** 3
     return [
         np.empty((blocks, 3), np.int32),
-        np.empty((blocks, BLOCK, BLOCK, BLOCK), np.int32),
+        np.empty((blocks, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), np.int32),
         np.empty((rows, COUNT + 1)),
         np.empty(rows * MAX_NEAR, np.int32),
     ]
@@ -147,13 +147,12 @@ class _Scratch(NamedTuple):
     waiting : array, shape (8 DEPTH, 5), int64
         Corner, size and depth.
     centre : array, shape (DEPTH, 3)
-    far : array, shape (DEPTH, SIZE)
+    far : array, shape (DEPTH, EXPANSION_SIZE)
         The expansion of far clusters.
     near : array, shape (DEPTH, m), int32
         The first nears[i] entries are the near clusters.
     nears : array, shape (DEPTH,), int64
-    local : array, shape (SIZE,)
-    point : array, shape (WORKSPACE,)
+    local : array, shape (EXPANSION_SIZE,)
     """
 
     waiting: NDArray[np.int64]
@@ -162,15 +161,14 @@ class _Scratch(NamedTuple):
     near: NDArray[np.int32]
     nears: NDArray[np.int64]
     local: NDArray[np.float64]
-    point: NDArray[np.float64]
 
 
 def _scratch(leaves: int) -> _Scratch:
     near = np.empty((DEPTH, leaves), np.int32)
     near[0, 0] = ROOT
     return _Scratch(
-        np.empty((8 * DEPTH, 5), np.int64), np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)),
-        near, np.ones(DEPTH, np.int64), np.empty(SIZE), np.empty(WORKSPACE),
+        np.empty((8 * DEPTH, 5), np.int64), np.zeros((DEPTH, 3)), np.zeros((DEPTH, EXPANSION_SIZE)),
+        near, np.ones(DEPTH, np.int64), np.empty(EXPANSION_SIZE),
     )  # fmt: skip
 
 
@@ -184,7 +182,7 @@ def _classify(
     expansions that these name: coefficients, centre, COUNT; and the near clusters. Returns how many
     there are of each.
     """
-    waiting, centre, far, near, nears, local, point = scratch
+    waiting, centre, far, near, nears, local = scratch
     rows = stored = listed = 0
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = corner[0], corner[1], corner[2]
     waiting[0, 3], waiting[0, 4] = top, 1
@@ -206,17 +204,17 @@ def _classify(
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, TOLERANCE, point)
+        add_clusters(clusters, close, local, q, reach, SPLIT_ERROR)
         cell_class = _class_of(local, half, size, tau)
-        a, b, c = x // BLOCK, y // BLOCK, z // BLOCK
-        if size >= BLOCK and cell_class < 0:
-            _fill(coarse, a, b, c, size // BLOCK, cell_class)
+        a, b, c = x // BLOCK_CELLS, y // BLOCK_CELLS, z // BLOCK_CELLS
+        if size >= BLOCK_CELLS and cell_class < 0:
+            _fill(coarse, a, b, c, size // BLOCK_CELLS, cell_class)
             continue
-        if size == BLOCK:
+        if size == BLOCK_CELLS:
             blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
             coarse[a, b, c] = rows
             rows += 1
-        if size > BLOCK or (cell_class == AMBIGUOUS and size > SMALLEST):
+        if size > BLOCK_CELLS or (cell_class == AMBIGUOUS and size > SMALLEST):
             size //= 2
             for k in range(8):
                 half_block = waiting[count + k]
@@ -228,7 +226,7 @@ def _classify(
             row = expanded[stored]
             level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
             copy_to(far[level] if cell_class == AMBIGUOUS else local, row)
-            row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
+            row[EXPANSION_SIZE], row[EXPANSION_SIZE + 1], row[EXPANSION_SIZE + 2] = q
             row[COUNT] = 0
             if cell_class == AMBIGUOUS:
                 row[COUNT] = nears[level]
@@ -237,7 +235,7 @@ def _classify(
                 listed += nears[level]
             cell_class = stored
             stored += 1
-        _fill(fine[rows - 1], x % BLOCK, y % BLOCK, z % BLOCK, size, cell_class)
+        _fill(fine[rows - 1], x % BLOCK_CELLS, y % BLOCK_CELLS, z % BLOCK_CELLS, size, cell_class)
     return rows, rows, stored, listed
 
 
@@ -253,7 +251,7 @@ def _fill(grid, x, y, z, size, value):
 @no_refcount
 def _class_of(local, half, size, tau):
     """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
-    error = local[ERROR] + ROUNDING
+    error = local[ERROR] + ROUNDING_ERROR
     if error >= 0.5:
         return AMBIGUOUS
     slope = variation(local, half)

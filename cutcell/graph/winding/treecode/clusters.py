@@ -32,15 +32,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.triangles import areas
-from ....runtime.compiled import no_refcount
+from ....runtime.compiled import inlined
 from ..boundary import Caps
 from . import multipole
 
 ROOT = 1
 """The index of the cluster of all caps."""
-TINY = 1e-300
+NO_AREA = 1e-300
 """In place of the area of a cluster without one."""
-LEAF_SIZE = 4
+CAPS_A_LEAF = 4
 """Caps in a leaf of the tree, at most."""
 
 
@@ -60,7 +60,7 @@ class Clusters(NamedTuple):
     sphere : array, shape (2 m, 6)
         Of each cluster: centre and radius; an upper bound of the cubic mean of the distances
         from the centre; and the sum of the areas of its triangles.
-    moments : array, shape (2 m, multipole.SIZE)
+    moments : array, shape (2 m, multipole.MOMENTS_SIZE)
     """
 
     rim: NDArray[np.float64]
@@ -87,7 +87,7 @@ def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.in
     Returns the order, shape (l,), and where each leaf begins in it, (m + 1,).
     """
     count, level, leaves = len(points), 1, 1
-    while leaves * LEAF_SIZE < count:
+    while leaves * CAPS_A_LEAF < count:
         leaves *= 2
     order, start = np.arange(count), np.arange(leaves + 1) * count // leaves
     while level < leaves:
@@ -112,7 +112,7 @@ def _measure(
     leaves = len(start) - 1
     sphere = np.zeros((2 * leaves, 6))
     if len(rim) == 0:
-        return sphere, np.zeros((2 * leaves, multipole.SIZE))
+        return sphere, np.zeros((2 * leaves, multipole.MOMENTS_SIZE))
     before = np.arange(len(rim)) - 1
     before[first[:-1]] = first[1:] - 1
     corners = np.stack([rim, rim[before], np.repeat(apex, np.diff(first), axis=0)], axis=1)
@@ -133,13 +133,13 @@ def _measure(
         radius = np.maximum.reduceat(away, bounds[:-1])
         cubes = np.add.reduceat(of_rim * away**3, bounds[:-1])
         cubes += np.add.reduceat(of_apex * apex_away**3, loops[:-1])
-        mean = np.cbrt(cubes / (3 * np.maximum(whole, TINY)))
+        mean = np.cbrt(cubes / (3 * np.maximum(whole, NO_AREA)))
         sphere[rows] = np.stack([*centre.T, radius, np.minimum(mean, radius), whole], axis=1)
         level //= 2
     return sphere, multipole.moments_of(corners, first[start[:-1]], sphere[:, :3])
 
 
-@no_refcount
+@inlined
 def error_bound(sphere, distance, reach):
     """Bound the error of a cluster's expansion in a ball of radius `reach` at that distance."""
     room = distance - sphere[3] - reach
@@ -151,7 +151,7 @@ def error_bound(sphere, distance, reach):
     return sphere[5] * near * near * near * series / (4 * np.pi * squared * squared * room * room)
 
 
-@no_refcount
+@inlined
 def next_cluster(k):
     """Return the cluster that follows k and its descendants in depth-first order; 0 at the end."""
     while k & 1:

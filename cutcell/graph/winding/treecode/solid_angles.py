@@ -13,10 +13,10 @@ from ....runtime.compiled import no_refcount, vectorized
 from .clusters import error_bound, next_cluster
 from .multipole import cube, in_registers, linear, square
 
-BATCH = 264
+POINTS_TOGETHER = 264
 """Points at most. A constant, so that the compiler knows that rows do not overlap; no power of two,
 so that rows do not compete for one set of the cache."""
-Y, Z, VALUE, RE, IM, CLEAR, WORKSPACE = (BATCH * row for row in range(1, 8))
+Y, Z, VALUE, RE, IM, CLEAR, WORKSPACE = (POINTS_TOGETHER * row for row in range(1, 8))
 """Offsets of the rows of a workspace, after the points' x; the last one is its size. VALUE: winding
 numbers. RE, IM: complex numbers whose arguments are the angles. CLEAR: positive for points far
 enough from all caps for rounding not to matter."""
@@ -24,9 +24,9 @@ SIMD_WIDTH = 8
 """The number of points is rounded up to a multiple of this."""
 RESCALE_EVERY = 8
 """Triangles. One multiplies the complex numbers by 1e-35 (a corner 1e-15 away) to 20."""
-NEAR = 1e-7
+ON_CAP = 1e-7
 """Closer to a cap than this, relative to its size, rounding may put a point on either side."""
-TINY = 1e-300
+NO_LENGTH = 1e-300
 
 
 @no_refcount
@@ -36,7 +36,9 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, np.int64(0)
-    begin_sum(points, count)
+    for i in range(count):
+        points[VALUE + i] = points[IM + i] = 0.0
+        points[RE + i] = points[CLEAR + i] = 1.0
     for top in among:
         k = np.int64(top)
         end = next_cluster(k)
@@ -52,31 +54,11 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    unscaled = add_cap(rim, clusters.apex[loop], points, count, unscaled)
+                    unscaled = _add_cap(rim, clusters.apex[loop], points, count, unscaled)
             k = next_cluster(k)
     for i in range(count):
-        points[VALUE + i] = value_of(points, i)
+        points[VALUE + i] += np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
     return error
-
-
-@no_refcount
-def load(points, i, x, y, z):
-    """Write point i of a workspace."""
-    points[i], points[Y + i], points[Z + i] = x, y, z
-
-
-@no_refcount
-def begin_sum(points, count):
-    """Begin to sum winding numbers at the first `count` points of a workspace."""
-    for i in range(count):
-        points[VALUE + i] = points[IM + i] = 0.0
-        points[RE + i] = points[CLEAR + i] = 1.0
-
-
-@no_refcount
-def value_of(points, i):
-    """Return the sum at a point."""
-    return points[VALUE + i] + np.arctan2(points[IM + i], points[RE + i]) / (2 * np.pi)
 
 
 @vectorized
@@ -93,7 +75,7 @@ def _add_cluster(moments, sphere, points, count):
 
 
 @no_refcount
-def add_cap(rim, apex, points, count, unscaled):
+def _add_cap(rim, apex, points, count, unscaled):
     """Add the solid angles of one cap.
 
     Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
@@ -116,7 +98,7 @@ def add_cap(rim, apex, points, count, unscaled):
 def _rescale(points, count):
     """Rescale the complex numbers before further products under- or overflow."""
     for i in range(count):
-        scale = 1 / (abs(points[RE + i]) + abs(points[IM + i]) + TINY)
+        scale = 1 / (abs(points[RE + i]) + abs(points[IM + i]) + NO_LENGTH)
         points[RE + i] *= scale
         points[IM + i] *= scale
 
@@ -146,5 +128,5 @@ def _add_triangle(p, q, r, points, count):
         down = (was < 0) & (triple < 0) & (im >= 0)
         points[VALUE + i] += np.float64(up) - np.float64(down)
         points[RE + i], points[IM + i] = re, im
-        clear = abs(triple) + max(rest, 0.0) - NEAR * la * lb * lc
+        clear = abs(triple) + max(rest, 0.0) - ON_CAP * la * lb * lc
         points[CLEAR + i] = min(points[CLEAR + i], clear)

@@ -18,14 +18,14 @@ from ..container import Document
 from ..nodes import Nodes, compose, node_shifts, target_of
 from .accessors import Accessor, find_accessor, read_accessor
 
-FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
+CLIP_RATE, MAX_FRAMES = 30, 3600
 """Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
 MAX_MATRICES = 2**22
 """Matrices in all frames: a chain of thousands of nodes is shown by fewer frames, too."""
 
-PATHS = ("translation", "rotation", "scale")
+CHANNEL_PATHS = ("translation", "rotation", "scale")
 
 
 def read_clips(
@@ -104,7 +104,7 @@ class Channels:
         if self.duration <= 0:
             return np.zeros(1)
         most = min(MAX_FRAMES, MAX_MATRICES / len(self.tree.parents))
-        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, most)
+        frames = min(self.duration * CLIP_RATE + 1e-6, most)
         return np.linspace(0, self.duration, max(math.floor(frames), 1) + 1)
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -143,7 +143,7 @@ def _tracks(
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
-        if node not in place or path not in PATHS:
+        if node not in place or path not in CHANNEL_PATHS:
             if path == "translation":
                 find_accessor(document, sampler.get("output"), "VEC3", label)
                 if node is not None:
@@ -184,7 +184,7 @@ class _Subtree:
         subtree = nodes.with_ancestors(joints)
         self.place = {node: k for k, node in enumerate(subtree)}
         self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in subtree])
-        self.rest = {path: getattr(nodes, path)[subtree] for path in PATHS}
+        self.rest = {path: getattr(nodes, path)[subtree] for path in CHANNEL_PATHS}
         self.local = nodes.local[subtree]
         self.joints = [self.place[node] for node in joints]
         self.back, self.inverse = back, inverse
@@ -214,7 +214,7 @@ class _Subtree:
             posed[track.path][:, nodes] = track.at(seconds)
             moved[nodes] = True
         world = np.tile(self.local, (count, 1, 1, 1))
-        world[:, moved] = compose(*(posed[path][:, moved] for path in PATHS))
+        world[:, moved] = compose(*(posed[path][:, moved] for path in CHANNEL_PATHS))
         world[..., :3, 3] += self.shift
         return composed(world, self.parents)
 

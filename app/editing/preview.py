@@ -8,18 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..animation.falloff.adjustments import Adjustments
-from ..animation.falloff.division import Division
-from ..animation.falloff.pipeline import RigFalloff, without_tail
-from ..editing.edited import adjustments_of, joints_measured
-from ..editing.layers.contents import Computed
-from ..geodesics import BoneDistances
-from ..geodesics.moved import MovedDistances
-from ..method import Method
-from ..rig import Rig
-from ..rig.rows import with_data
-from ..weights.skinning_weights import keep_strongest, skinning_weights
-from .binding import Binding
+from cutcell.animation.falloff.adjustments import Adjustments
+from cutcell.animation.falloff.division import Division
+from cutcell.animation.falloff.pipeline import RigFalloff, subtract_floor
+from cutcell.binding.binding import Binding
+from cutcell.editing.edited import adjustments_of, joints_measured
+from cutcell.editing.layers.contents import Computed
+from cutcell.geodesics import BoneDistances
+from cutcell.method import Method
+from cutcell.rig import Rig
+from cutcell.rig.rows import with_data
+from cutcell.weights.skinning_weights import keep_strongest, skinning_weights
+
+from .moved_distances import MovedDistances
 
 UNSEEN = 1e-3
 """Difference of weights whose colours differ by less than one of 256 shades."""
@@ -85,7 +86,7 @@ class _IncrementalFalloff:
         changed = _of_joints(division.weights, is_changed)
         weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
         weights = diffusion.whole(weights, division.weights)
-        return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))
+        return subtract_floor(replace(self._falloff, division=division).with_rigid_parts(weights))
 
 
 def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
