@@ -73,8 +73,7 @@ class NodeGrid:
         key, (x, y) = self._keys(np.clip(points, -1, 2)), np.indices((3, 3)).reshape(2, 9, 1) - 1
         lowest = key + (x * CELLS_ACROSS + y) * CELLS_ACROSS - 1  # of three cells in a row
         following = self._cells[np.searchsorted(self._cells, lowest)]
-        is_near: NDArray[np.bool_] = (following < lowest + 3).any(axis=0)
-        return is_near
+        return np.asarray((following < lowest + 3).any(axis=0))
 
     @cached_property
     def _cells(self) -> NDArray[np.int64]:

@@ -1,12 +1,11 @@
 """Bones, their distances through the body, and what to do where there are none."""
 
 from ..bones.bones import Bones, Sources, bone_samples, bone_segments
-from ..geometry.segments import distance_to_segment
 from ..method import LEAVES
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
 from .solver import BoneDistanceSolver
-from .tracing.paths import PIECES, TracedPath, path_length, trace_path
+from .tracing.paths import PIECES, TracedPath, trace_path
 
 __all__ = [
     "FALLBACK_REASONS",
@@ -20,7 +19,5 @@ __all__ = [
     "bone_distances",
     "bone_samples",
     "bone_segments",
-    "distance_to_segment",
-    "path_length",
     "trace_path",
 ]

@@ -111,11 +111,6 @@ def trace_path(
     return TracedPath(np.concatenate([path, last]), np.concatenate([kinds, to_bone]))
 
 
-def path_length(path: ArrayLike) -> float:
-    """Return the length of a path of points (p, 3)."""
-    return float(np.linalg.norm(np.diff(np.asarray(path, float), axis=0), axis=1).sum())
-
-
 def _descend(
     graph: CutCellGraph, field: NDArray[np.float64], source: NDArray[np.float64], node: int
 ) -> list[int]:

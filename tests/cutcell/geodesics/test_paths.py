@@ -11,7 +11,7 @@ from cutcell import (
     Skeleton,
     TriangleMesh,
 )
-from cutcell.geodesics import PIECES, path_length, trace_path
+from cutcell.geodesics import PIECES, trace_path
 from cutcell.geodesics.tracing.inside import SAMPLED_TOLERANCE
 from cutcell_assets import demo_path
 from cutcell_lab.benchmarks.paths import outside_by, samples_of
@@ -33,10 +33,9 @@ def test_along_edges_it_is_exactly_as_long_as_the_field_says(connectivity):
     mesh, distances = measured(connectivity)
     field = distances.field(0)
     for vertex in range(0, len(mesh.vertices), 97):
-        path = trace_path(distances, 0, vertex, field).points
-        assert path_length(path) == pytest.approx(
-            field[distances.graph.vertex_node[vertex]], rel=5e-3
-        )
+        path = trace_path(distances, 0, vertex, field)
+        expected = field[distances.graph.vertex_node[vertex]]
+        assert path.length == pytest.approx(expected, rel=5e-3)
 
 
 def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
@@ -44,8 +43,9 @@ def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
     graph, field = distances.graph, distances.field(0)
     far = np.argsort(-field[graph.vertex_node])[: len(graph.vertex_node) // 2 : 41]
     for vertex in far:
-        path = trace_path(distances, 0, int(vertex), field).points
-        assert path_length(path) == pytest.approx(field[graph.vertex_node[vertex]], rel=0.13)
+        traced = trace_path(distances, 0, int(vertex), field)
+        path = traced.points
+        assert traced.length == pytest.approx(field[graph.vertex_node[vertex]], rel=0.13)
         assert len(path) <= 9
         steps = np.linspace(0, 1, 19)[:, None, None]
         between = (path[:-1] + steps * (path[1:] - path[:-1])).reshape(-1, 3)
