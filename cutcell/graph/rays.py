@@ -196,10 +196,11 @@ def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
             continue
         for k in range(begin + 1, end):
             p, t, s = position[k], triangle[k], sign[k]
-            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
-                position[k] = position[k - 1]
-                triangle[k] = triangle[k - 1]
-                sign[k] = sign[k - 1]
+            while k > begin:
+                p0, s0, t0 = position[k - 1], sign[k - 1], triangle[k - 1]
+                if p0 < p or (p0 == p and (s0 < s or (s0 == s and t0 <= t))):
+                    break
+                position[k], triangle[k], sign[k] = p0, t0, s0
                 k -= 1
             position[k], triangle[k], sign[k] = p, t, s
 
@@ -256,12 +257,3 @@ def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
-
-
-@inlined
-def _after(position0, sign0, triangle0, position1, sign1, triangle1):
-    if position0 != position1:
-        return position0 > position1
-    if sign0 != sign1:
-        return sign0 > sign1
-    return triangle0 > triangle1
