@@ -184,10 +184,11 @@ def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
             continue
         for k in range(begin + 1, end):
             p, t, s = position[k], triangle[k], sign[k]
-            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
-                position[k] = position[k - 1]
-                triangle[k] = triangle[k - 1]
-                sign[k] = sign[k - 1]
+            while k > begin:
+                p0, s0, t0 = position[k - 1], sign[k - 1], triangle[k - 1]
+                if p0 < p or (p0 == p and (s0 < s or (s0 == s and t0 <= t))):
+                    break
+                position[k], triangle[k], sign[k] = p0, t0, s0
                 k -= 1
             position[k], triangle[k], sign[k] = p, t, s
 
@@ -201,12 +202,3 @@ def first_at_least(coordinate, resolution):
     while (i + 0.5) / resolution < coordinate:
         i += 1
     return i
-
-
-@inlined
-def _after(position0, sign0, triangle0, position1, sign1, triangle1):
-    if position0 != position1:
-        return position0 > position1
-    if sign0 != sign1:
-        return sign0 > sign1
-    return triangle0 > triangle1
