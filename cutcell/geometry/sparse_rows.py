@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 
+from .vectors import TIE
+
 
 def from_dense(values: NDArray[np.float64]) -> csr_array:
     """Return rows (p, j) of the finite values."""
@@ -43,6 +45,17 @@ def chosen_entries(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
     return csr_array((rows.data[which], rows.indices[which], start), rows.shape)
 
 
+def with_data(rows: csr_array, data: NDArray[np.float64]) -> csr_array:
+    """Return rows with other values of their entries (e,); zeros are left out."""
+    return chosen_entries(csr_array((data, rows.indices, rows.indptr), rows.shape), data != 0)
+
+
+def scaled(rows: csr_array, factor: NDArray[np.float64]) -> csr_array:
+    """Multiply each row (p, j) by its factor (p,)."""
+    data = rows.data * np.repeat(factor, np.diff(rows.indptr))
+    return csr_array((data, rows.indices, rows.indptr), rows.shape)
+
+
 def with_columns(rows: csr_array, number: NDArray[np.integer], columns: int) -> csr_array:
     """Return rows whose columns have other numbers, ascending too, among more columns."""
     return csr_array((rows.data, number[rows.indices], rows.indptr), (rows.shape[0], columns))
@@ -69,4 +82,18 @@ def column_of_least(rows: csr_array) -> NDArray[np.intp]:
     row, column = rows_of_entries(rows), np.zeros(rows.shape[0], np.intp)
     is_least = rows.data == least(rows)[row]
     column[row[is_least][::-1]] = rows.indices[is_least][::-1]  # the first one is written last
+    return column
+
+
+def single(column: NDArray[np.integer], columns: int) -> csr_array:
+    """Return rows with a one in a single column each, given by number (p,)."""
+    start = np.arange(len(column) + 1)
+    return csr_array((np.ones(len(column)), column, start), (len(column), columns))
+
+
+def column_of_most(rows: csr_array) -> NDArray[np.intp]:
+    """Return the column of the largest value of each row, the first of equals, 0 for none."""
+    row, column = rows_of_entries(rows), np.zeros(rows.shape[0], np.intp)
+    is_most = rows.data >= (rows.max(axis=1).toarray() * (1 - TIE))[row]
+    column[row[is_most][::-1]] = rows.indices[is_most][::-1]
     return column

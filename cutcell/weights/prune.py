@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.sparse_rows import with_data
 from ..geometry.vectors import TIE
-from ..rig.rows import with_data
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts

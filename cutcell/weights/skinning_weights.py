@@ -15,8 +15,8 @@ from ..animation.falloff.pipeline import RigFalloff
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
+from ..geometry.sparse_rows import chosen_entries, rows_of_entries, scaled, single, with_rows
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..rig.rows import rows_of_entries, scaled, single, with_data, with_rows
 from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
 from .prune import prune
@@ -76,7 +76,7 @@ def skinning_weights(
         )
 
     if allowed is not None:
-        deform = np.isin(np.arange(len(distances.at_welded)), distances.bones.joint)
+        deform = np.isin(np.arange(distances.rows.shape[1]), distances.bones.joint)
         allowed = check_allowed(distances.graph, deform, allowed)
     steps = weight_steps(distances, method, allowed, adjustments, progress=progress)
     return last_of(steps).toarray()
@@ -166,7 +166,7 @@ def permit(weights: csr_array, distances: BoneDistances, allowed: NDArray[np.boo
     Shapes: weights, allowed (n, j); returns (n, j).
     """
     is_allowed = allowed[rows_of_entries(weights), weights.indices]
-    permitted = with_data(weights, weights.data * is_allowed)
+    permitted = chosen_entries(weights, is_allowed)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
     distance = np.where(allowed[lost].T, distances.at(slice(None), lost), np.inf)
     if np.isinf(distance.min(axis=0)).any():
@@ -210,6 +210,6 @@ def keep_strongest(
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not depend on their numbers."""
-    positions = np.full((len(distances.at_welded), 3), np.inf)
+    positions = np.full((distances.rows.shape[1], 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
     return distances.graph.lattice.order(positions)

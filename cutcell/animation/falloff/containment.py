@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
+from ...geometry.sparse_rows import column_of_most, scaled, single
 from ...geometry.triangles import face_edges
 from ...rig import Skeleton
-from ...rig.rows import scaled, single, strongest
 from .components import SMALL, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
 
@@ -110,13 +110,13 @@ def make_rigid(
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
     component, joints = surface.component, weights.shape[1]
-    entries = surface.areas, (component, strongest(weights))
+    entries = surface.areas, (component, column_of_most(weights))
     votes = csr_array(entries, (len(independent), joints))
     share = votes.max(axis=1).toarray() / np.maximum(votes.sum(axis=1), 1e-300)
     rigidity = np.where(independent, 0.0, ramp(share, *RIGID))
     if not rigidity.any():
         return weights
-    rigid = scaled(single(strongest(votes), joints), rigidity)[component]
+    rigid = scaled(single(column_of_most(votes), joints), rigidity)[component]
     return scaled(weights, 1 - rigidity[component]) + rigid
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...rig.rows import rows_of_entries, scaled, with_rows
+from ...geometry.sparse_rows import rows_of_entries, scaled, with_rows
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads
 from .factors import LANES, Factors

@@ -10,8 +10,8 @@ from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
+from ...geometry.sparse_rows import rows_of_entries
 from ...geometry.vectors import TIE, segment_fraction
-from ...rig.rows import rows_of_entries
 from ...runtime.compiled import no_refcount
 from .adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment

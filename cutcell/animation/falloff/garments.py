@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ...geometry.sparse_rows import scaled, with_rows
 from ...graph import CutCellGraph
-from ...rig.rows import scaled, with_rows
 from .components import SMALL, longest_sides
 from .containment import ramp
 from .diffusion import Diffusion

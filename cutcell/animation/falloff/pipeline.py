@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import BoneDistances
-from ...rig.rows import rows_of_entries, scaled, with_data
+from ...geometry.sparse_rows import least, rows_of_entries, scaled, with_data
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
 from .adjustments import Adjustments
@@ -51,8 +51,7 @@ class RigFalloff:
     def over(cls, distances: BoneDistances, adjustments: Adjustments | None = None) -> RigFalloff:
         """Divide the surface of a graph by distances; prepare its diffusion by the nearest."""
         graph = distances.graph
-        surface, rows = surface_of(graph), distances.rows
-        depth = np.minimum.reduceat(rows.data, rows.indptr[:-1])
+        surface, depth = surface_of(graph), least(distances.rows)
         division, diffusion = run_parallel(
             lambda: Division.by(distances, surface, adjustments),
             lambda: Diffusion.over(surface, depth, graph.lattice.resolution),

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...bones.nearest import NodeTree
+from ...geometry.sparse_rows import column_of_most, scaled, single, with_rows
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
-from ...rig.rows import scaled, single, strongest, with_rows
 from .components import SMALL, longest_sides
 from .containment import ramp
 from .surface_operators import SurfaceOperators
@@ -86,9 +86,9 @@ def _contact_weights(
     gather = scaled(gather, 1 / np.maximum(gather.sum(axis=1), 1e-300))
     mean = gather @ touched
     mean.sort_indices()
-    share = mean.maximum(gather @ single(strongest(touched), joints))
+    share = mean.maximum(gather @ single(column_of_most(touched), joints))
     alone = ramp(share.max(axis=1).toarray(), *DOMINANT)
-    return scaled(mean, 1 - alone) + scaled(single(strongest(share), joints), alone)
+    return scaled(mean, 1 - alone) + scaled(single(column_of_most(share), joints), alone)
 
 
 def nearest_on_body(
