@@ -45,11 +45,6 @@ def chosen_entries(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
     return csr_array((rows.data[which], rows.indices[which], start), rows.shape)
 
 
-def with_data(rows: csr_array, data: NDArray[np.float64]) -> csr_array:
-    """Return rows with other values of their entries (e,); zeros are left out."""
-    return chosen_entries(csr_array((data, rows.indices, rows.indptr), rows.shape), data != 0)
-
-
 def scaled(rows: csr_array, factor: NDArray[np.float64]) -> csr_array:
     """Multiply each row (p, j) by its factor (p,)."""
     data = rows.data * np.repeat(factor, np.diff(rows.indptr))

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..geometry.sparse_rows import with_data
 from ..geometry.vectors import TIE
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
@@ -36,7 +35,9 @@ def prune(
         _prune(part.start, part.stop, *rows, *options, pruned)
 
     in_threads(work, parts(weights.shape[0]), report)
-    return with_data(weights, pruned)
+    kept = np.flatnonzero(pruned)
+    start = np.searchsorted(kept, weights.indptr)
+    return csr_array((pruned[kept], weights.indices[kept], start), weights.shape)
 
 
 @compiled

@@ -124,8 +124,8 @@ def weight_steps(
         weights = equation_1(distances, method, allowed, adjustments)
         yield WeightStep("falloff", weights, allowed is None)
     else:
-        falloff = falloff or RigFalloff.over(distances, adjustments)
-        for name, weights in falloff.steps(report):
+        # A falloff that was not given is large, and is gone after its steps.
+        for name, weights in (falloff or RigFalloff.over(distances, adjustments)).steps(report):
             yield WeightStep(name, weights, welded=True)
     if allowed is None:
         weights = limited(weights)[graph.vertex_node]

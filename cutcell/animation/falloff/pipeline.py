@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import BoneDistances
-from ...geometry.sparse_rows import least, rows_of_entries, scaled, with_data
+from ...geometry.sparse_rows import least
+from ...runtime.compiled import compiled
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
 from .adjustments import Adjustments
@@ -82,7 +83,19 @@ class RigFalloff:
 
 
 def without_tail(weights: csr_array) -> csr_array:
-    """Subtract a part of each vertex's largest weight from all of them."""
-    tail = TAIL * weights.max(axis=1).toarray()
-    weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
-    return scaled(weights, 1 / weights.sum(axis=1))
+    """Subtract a part of each vertex's largest weight from all of them, in place."""
+    _subtract_tail(weights.indptr, weights.data)
+    return weights
+
+
+@compiled
+def _subtract_tail(start, weight):
+    for v in range(len(start) - 1):
+        largest, total = 0.0, 0.0
+        for e in range(start[v], start[v + 1]):
+            largest = max(largest, weight[e])
+        for e in range(start[v], start[v + 1]):
+            weight[e] = max(weight[e] - TAIL * largest, 0.0)
+            total += weight[e]
+        for e in range(start[v], start[v + 1]):
+            weight[e] /= total
