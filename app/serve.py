@@ -122,7 +122,7 @@ def serve(
         # While the browser starts.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
     else:
-        compiling = start_process("warm_up")  # noqa: F841  it ends with this variable
+        compiling = start_process()  # noqa: F841  it ends with this variable
     # Printed earlier, the address could be requested before the server listens.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"

@@ -9,7 +9,7 @@ from typing import Any
 
 from .errors import ParameterError
 
-LONG = 60
+MAX_SHOWN = 60
 """Characters of a wrong value that are shown, at most."""
 
 
@@ -67,7 +67,7 @@ def shown(value: Any) -> str:
         text = one_line(repr(value))
     except Exception:  # a number of thousands of digits has no text, others may be broken
         return f"something of the type {type(value).__name__}"
-    return text if len(text) <= LONG else f"{text[: LONG - 3]}..."
+    return text if len(text) <= MAX_SHOWN else f"{text[: MAX_SHOWN - 3]}..."
 
 
 def _is_real(value: Any) -> bool:

@@ -167,7 +167,6 @@ def test_the_method_of_the_paper_reads_alone():
         ROOT / "cutcell" / name
         for name in (
             "geodesics/solver.py",
-            "geodesics/moved.py",
             "geodesics/tracing/inside.py",
             "weights/skinning_weights.py",
         )
@@ -184,6 +183,41 @@ def test_the_method_of_the_paper_reads_alone():
         if name.startswith("cutcell.animation")
     ]
     assert wrong == []
+
+
+INTERFACES = ("EPILOG", "NOTE", "SUFFIXES")
+"""Constants by which each command and each file format describes itself."""
+
+
+def test_no_name_of_a_constant_has_two_meanings():
+    meanings: dict[str, dict[str, list[str]]] = {}
+    for path in core_files():
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            for name, value in constants_of(node):
+                where = f"{path.relative_to(ROOT)}:{node.lineno}"
+                meanings.setdefault(name, {}).setdefault(value, []).append(where)
+    several = {name: values for name, values in meanings.items() if len(values) > 1}
+    assert {name: several[name] for name in several if name not in INTERFACES} == {}
+
+
+def constants_of(node: ast.stmt) -> list[tuple[str, str]]:
+    """Return the constants that a statement of a module defines, and their values as text."""
+    if isinstance(node, ast.AnnAssign) and node.value is not None:
+        targets, value = [node.target], node.value
+    elif isinstance(node, ast.Assign):
+        targets, value = node.targets, node.value
+    else:
+        return []
+    pairs = []
+    for target in targets:
+        names = target.elts if isinstance(target, ast.Tuple) else [target]
+        values = value.elts if isinstance(value, ast.Tuple) and len(names) > 1 else [value]
+        pairs += zip(names, values * (len(names) // len(values)), strict=True)
+    return [
+        (name.id, ast.unparse(value))
+        for name, value in pairs
+        if isinstance(name, ast.Name) and re.fullmatch(r"[A-Z][A-Z0-9_]*", name.id)
+    ]
 
 
 def test_reading_gltf_needs_no_writing():

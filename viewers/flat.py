@@ -12,18 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.bones.bones import Sources
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 from cutcell.geodesics import Bones
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.geodesics.solver import find_sources
 from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph
-from cutcell.graph.sections import RaySlice, slice_rays
 from cutcell.method import Method
 from cutcell.rig import Rig
 
 from .character import to_scene
 from .distance_scene import unit_of
 from .plane_section import plane_outline
+from .ray_slice import RaySlice, slice_rays
 from .slice_scene import file_axis, slice_place
 
 MAX_NODES = 2000
@@ -232,4 +232,4 @@ def _sources(graph: CutCellGraph, bones: Bones | None, samples: int) -> Sources:
     if bones is None or not len(graph.edges):
         none = np.empty(0, np.int32)
         return Sources(none, none, np.empty(0))
-    return find_sources(graph, bones, samples, NodeTree.of(graph))
+    return find_sources(graph, bones, samples, NodeGrid.of(graph))

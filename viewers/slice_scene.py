@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.graph import Lattice
-from cutcell.graph.sections import RaySlice
 from cutcell.rig import Rig
 
 from .character import to_scene
@@ -12,6 +11,7 @@ from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
 from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
 from .plane_section import plane_outline
+from .ray_slice import RaySlice
 
 INSIDE, DROPPED = 0.13, 0.045
 """Thickness of kept and dropped segments, in cells of the lattice."""

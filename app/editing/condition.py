@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.checks import LONG, shown
+from cutcell.checks import MAX_SHOWN, shown
 from cutcell.editing.locks import joint_index
 from cutcell.editing.selections import Neighbours
 from cutcell.errors import ParameterError, WeightsError
@@ -199,7 +199,7 @@ class _Parser:
 
     def _fail(self, expected: str) -> NoReturn:
         rest = self._rest()
-        where = f"at character {self._at + 1}, {shown(rest[:LONG])}" if rest else "at its end"
+        where = f"at character {self._at + 1}, {shown(rest[:MAX_SHOWN])}" if rest else "at its end"
         example = 'weight of "hand.L" > 0.1'
         raise ParameterError(f"the condition needs {expected} {where}; write for example {example}")
 

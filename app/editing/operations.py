@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from cutcell.checks import check_choice, check_integer, check_number
 from cutcell.editing.layers.contents import MAX_STEPS
-from cutcell.editing.selections.neighbours import STEP, Neighbours
+from cutcell.editing.selections.neighbours import SMOOTHING_STEP, Neighbours
 from cutcell.editing.symmetry import Mirror, reflected
 from cutcell.errors import ParameterError, WeightsError
 
@@ -114,7 +114,7 @@ def smoothed(selected: Selected, neighbours: Neighbours, passes: int) -> csr_arr
         for _ in range(passes if some.any() else 0):
             for _ in range(INNER_SWEEPS if len(inside) else 0):
                 rows[inside] = _means(to_inside @ rows, rows[inside])
-            rows[at] += STEP * (_means(to_moving @ rows, rows[at]) - rows[at])
+            rows[at] += SMOOTHING_STEP * (_means(to_moving @ rows, rows[at]) - rows[at])
         columns.append(csr_array(rows[at[welded], :-1]))
     return csr_array(hstack(columns, format="csr"))
 

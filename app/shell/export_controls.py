@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.binding.warnings import SAME
+from cutcell.binding.warnings import SAME_WEIGHT
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.runtime.display import count
@@ -76,7 +76,7 @@ def loss(state: State) -> str:
 
 def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
     """Return the vertices with other weights; one, other (n, j)."""
-    differs: NDArray[np.bool_] = np.abs(one - other).max(axis=1, initial=0) > SAME
+    differs: NDArray[np.bool_] = np.abs(one - other).max(axis=1, initial=0) > SAME_WEIGHT
     return differs
 
 

@@ -14,14 +14,14 @@ from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
 from ..method import Method
 from ..runtime.display import count
-from ..weights.skinning_weights import LABELS
+from ..weights.skinning_weights import LIMIT_LABELS
 
-NOTICED = 1e-4
+LOST_BELOW = 1e-4
 """A joint with less after a step has lost its share."""
-STEPS = explanation.LABELS | LABELS
+STEP_LABELS = explanation.FALLOFF_LABELS | LIMIT_LABELS
 """Labels of the steps from distances to weights. A binding has some of them, and then a step for
 each layer that changes the vertex, by its title."""
-AT_STEP = explanation.LOST | {
+AT_STEP = explanation.LOST_AT | {
     "storable": "The file cannot store weights of this joint at the vertex.",
     "threshold": "Its weight was below the threshold, {threshold:.1%} of the sum.",
     "limit": "{others} more weight, and {limit} are kept.",
@@ -84,15 +84,15 @@ class Trace:
             return "The joint does not deform the mesh."
         if self.allowed is not None and not self.allowed[self.vertex, joint]:
             return AT_STEP["storable"]
-        alive = [name for name, row in self.rows.items() if row[joint] > NOTICED]
+        alive = [name for name, row in self.rows.items() if row[joint] > LOST_BELOW]
         if not alive:
             return self._without_share(joint, has_path, factors)
         names = list(self.rows)
         lost = names[names.index(alive[-1]) + 1]
-        if lost not in STEPS:
+        if lost not in STEP_LABELS:
             return f"The layer “{lost}” gives it no weight."
         if lost != "limit":
-            return AT_STEP.get(lost, f"Its weight was removed at “{STEPS[lost]}”.")
+            return AT_STEP.get(lost, f"Its weight was removed at “{STEP_LABELS[lost]}”.")
         before, limit = self.rows[alive[-1]], self.method.max_influences
         others = int((before > before[joint]).sum())
         code = "limit" if limit is not None and others >= limit else "threshold"
@@ -110,6 +110,6 @@ class Trace:
         if not np.isfinite(near[joint]):
             return "It is farther than the nearest joints, which share the vertex."
         ratio = float(near[joint] / near.min())
-        if self.falloff is not None and explanation.is_barred(ratio, factors, NOTICED):
+        if self.falloff is not None and explanation.is_barred(ratio, factors, LOST_BELOW):
             return "Its bone lies in another connected component, which counts as farther."
         return f"It is too far: its distance is {ratio:.2g} times the smallest."

@@ -25,7 +25,7 @@ from .binding import Binding
 from .resolution import method_per_character
 from .stages import bind_edited
 
-COPIES = 4
+MATRICES = 4
 """Maximum number of matrices of vertices and joints, distances and weights, at a time."""
 
 
@@ -134,4 +134,4 @@ def _check(rig: Rig, method: Method) -> None:
     Lattice.around(rig.mesh, method.resolution)
     rig.require_joints()
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
-    check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
+    check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), MATRICES)

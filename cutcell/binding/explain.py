@@ -244,7 +244,7 @@ def _share(rig: Rig, trace: Trace, joint: int) -> JointShare:
     distances, vertex = trace.distances, trace.vertex
     graph, bones = distances.graph, distances.bones
     unit = graph.lattice.size
-    distance = float(distances.joint[joint, vertex])
+    distance = float(distances.at(joint, vertex))
     own = np.flatnonzero(bones.joint == joint)
     point = graph.nodes[graph.vertex_node[vertex]]
     straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)

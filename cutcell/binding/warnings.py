@@ -21,7 +21,7 @@ from ..geodesics import FALLBACK_REASONS, BoneDistances
 from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
 from ..method import ANIMATION, MAX_RESOLUTION
-from ..pose.stretch import DEGREES, MAX_SHARE, Stretch
+from ..pose.stretch import MAX_SHARE, STRETCH_DEGREES, Stretch
 from ..rig import Rig
 from ..runtime.display import count, listed, share, shown_name
 from .binding import Binding
@@ -34,7 +34,7 @@ NEAR_BONE = 200
 """Vertices that are compared with all bones."""
 Shown = (Filled, Attached, Painted)
 """Contents that a person has chosen the joints of."""
-SAME = 1e-6
+SAME_WEIGHT = 1e-6
 """Weights that differ by less are the same: files round them."""
 
 
@@ -124,7 +124,7 @@ def _stretches(rig: Rig, stretch: Stretch) -> Iterator[str]:
         name = shown_name(rig.skeleton.names[stretch.joint])
         yield LocatedWarning(
             f"{share(stretch.share, 1)} of the surface stretches or shrinks to more than twice "
-            f'when joints turn by {DEGREES:g}°, most of it with "{name}", worst '
+            f'when joints turn by {STRETCH_DEGREES:g}°, most of it with "{name}", worst '
             f"at vertex {stretch.vertex} (at {place} in file units). Check which joints deform "
             "near there, or bind that part separately",
             "stretched-surface",
@@ -149,7 +149,7 @@ def _blocked_by_locks(rig: Rig, graph: CutCellGraph, layers: Sequence[Layer]) ->
         else:
             which, some = sources.rows(layer, rig.weights, which)
             rows = np.asarray(some[:, np.flatnonzero(is_locked)].todense())
-        differs = np.abs(rig.weights[which][:, is_locked] - rows) > SAME
+        differs = np.abs(rig.weights[which][:, is_locked] - rows) > SAME_WEIGHT
         keeping = is_locked.copy()
         keeping[is_locked] = differs.any(axis=0)
         if keeping.any():

@@ -13,7 +13,7 @@ from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig import Skeleton
 
-LONGEST = 20.0
+MAX_SAMPLED_LENGTH = 20.0
 """Longest sides of the mesh that a bone has samples of: it may lead to a joint however far."""
 
 
@@ -129,7 +129,8 @@ def bone_samples(
         In the unit cube.
     samples : int
         N, points on each bone, both ends included; a single one is in the middle. With
-        connectivity "any" at least one for each lattice cell, up to a length of `LONGEST`.
+        connectivity "any" at least one for each lattice cell, up to a length of
+        `MAX_SAMPLED_LENGTH`.
 
     Returns
     -------
@@ -142,8 +143,8 @@ def bone_samples(
     if graph.connectivity == "any":
         # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(way, axis=1)
-        way = way * (LONGEST / np.maximum(length, LONGEST))[:, None]
-        cells = (np.minimum(length, LONGEST) - TIE) * graph.lattice.resolution
+        way = way * (MAX_SAMPLED_LENGTH / np.maximum(length, MAX_SAMPLED_LENGTH))[:, None]
+        cells = (np.minimum(length, MAX_SAMPLED_LENGTH) - TIE) * graph.lattice.resolution
         counts = np.maximum(counts, np.ceil(cells).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(bone)) - (np.cumsum(counts) - counts)[bone]

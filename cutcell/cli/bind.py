@@ -9,7 +9,6 @@ from ..errors import ParameterError
 from ..io.formats import GLTF
 from . import options as given
 from .console import for_people, print_result, progress_bars
-from .report import described, report_rows
 
 if TYPE_CHECKING:
     from ..binding import Binding
@@ -78,7 +77,7 @@ def bind(
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
     from ..templates.fit import check_template
-    from .summary import summarize_weights
+    from .summary import described, report_rows, summarize_weights
 
     edits = None if layers is None else stored.load_edits(layers)
     how, resolution = given.layered_method(options, edits)

@@ -20,7 +20,7 @@ EPILOG = """Examples:
 
 - `cutcell clean network.glb clean.glb --json | jq '.joints[] | {name, share}'`  (for a script)"""
 
-FEW = 12
+LISTED_JOINTS = 12
 """Joints that the table lists; `--json` has them all."""
 
 
@@ -74,9 +74,9 @@ def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str
     yield "changed", f"{document['changed']:,} of {document['vertices']:,} vertices"
     if document["bound"]:
         yield "bound again", f"{document['bound']:,} that lost more than half of their weight"
-    for loss in cleaned.losses[:FEW]:
+    for loss in cleaned.losses[:LISTED_JOINTS]:
         vertices = count(len(loss.vertices), "vertex")
         share = f"{loss.share:.1%} of its weight, on {vertices}, up to {loss.largest:.0%} of one"
         yield loss.name, share
-    if len(cleaned.losses) > FEW:
-        yield "", f"and {len(cleaned.losses) - FEW} more joints"
+    if len(cleaned.losses) > LISTED_JOINTS:
+        yield "", f"and {len(cleaned.losses) - LISTED_JOINTS} more joints"

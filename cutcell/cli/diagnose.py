@@ -33,7 +33,7 @@ FAIL_ON = ("error", "warning")
 """Severities that `--fail-on` accepts, the most severe first."""
 FAILED = 1
 """Exit code where a finding is at least that severe."""
-FEW = 5
+LISTED_DETAILS = 5
 """Lines of details that are printed of one finding; `--json` has them all."""
 
 
@@ -125,8 +125,8 @@ def _print_findings(heading: str, findings: tuple[Finding, ...]) -> None:
     for finding in findings:
         label = (f"{finding.severity:<8}", COLORS[finding.severity])
         _line(Text.assemble(label, (finding.title, "bold")))
-        more = len(finding.details) - FEW
-        for text in (finding.message, *finding.details[:FEW]):
+        more = len(finding.details) - LISTED_DETAILS
+        for text in (finding.message, *finding.details[:LISTED_DETAILS]):
             _line(INDENT + text)
         if more > 0:
             _line(f"{INDENT}and {more} more")

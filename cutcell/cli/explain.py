@@ -27,7 +27,7 @@ EPILOG = """Examples:
 
 - `cutcell explain character.glb 120 --json | jq '.joints[].steps'`  (for a script)"""
 
-MAX_JOINTS = 6
+PRINTED_JOINTS = 6
 """Maximum number of printed joints; `--json` lists all."""
 
 
@@ -73,18 +73,18 @@ def explain(
 
 
 def _print(heading: str, explanation: Explanation, joint: str | None) -> None:
-    from ..binding.absence import STEPS
+    from ..binding.absence import STEP_LABELS
 
     console = Console(highlight=False)
     place = ", ".join(f"{x:.4g}" for x in explanation.position)
     table = Table(title=Text(f"{heading} at ({place})", "bold"), title_justify="left", box=None)
     table.add_column(style="dim", no_wrap=True)
-    shares = explanation.joints[:MAX_JOINTS]
+    shares = explanation.joints[:PRINTED_JOINTS]
     absent = [share for share in explanation.joints if share.absence]
     shares += tuple(share for share in absent if share.name == joint and share not in shares)
     for share in shares:
         table.add_column(Text(shown_name(share.name), overflow="fold"), justify="right")
-    for name, cells in _rows(shares, STEPS):
+    for name, cells in _rows(shares, STEP_LABELS):
         table.add_row(name, *cells)
     console.print(table)
     if explanation.fallback:

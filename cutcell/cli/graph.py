@@ -8,7 +8,6 @@ from typing import Any
 from ..method import STAGE_OPTIONS
 from . import options as given
 from .console import for_people, print_result, progress_bars
-from .report import described, report_rows
 
 EPILOG = """Examples:
 
@@ -44,6 +43,7 @@ def graph(
     from ..io import load
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
+    from .summary import described, report_rows
 
     how = given.chosen_method(options)
     loaded = load(rig, skeleton=skeleton)

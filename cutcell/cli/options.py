@@ -42,7 +42,7 @@ def _option(panel: str, flags: str, metavar: str, text: str, show_default: bool 
 @for_people
 def _stdin(context: typer.Context, path: Path | None) -> Path | None:
     """Return a file with what is on standard input in the place of "-"."""
-    from ..io.inputs import as_file
+    from ..io.files import as_file
 
     if path != Path("-"):
         return path

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
-from ..animation.falloff.diffusion import MIN_CELLS
-from ..animation.falloff.pipeline import TAIL
+from ..animation.falloff.diffusion import MIN_DEPTH_CELLS
+from ..animation.falloff.pipeline import WEIGHT_FLOOR
 from ..binding import bind
 from ..errors import WeightsError
 from ..method import ANIMATION, check_resolution
@@ -24,7 +24,7 @@ from ..weights.prune import prune
 from .subject import Subject
 from .weights import INFLUENCES
 
-NEAR = 3.0
+NEAR_RATIO = 3.0
 """A joint is near a vertex if its distance is at most this multiple of the nearest joint's. From
 2.5 to 6 the artists' weights that it was chosen on change by less than 0.01 (docs/clean.md); lower
 values remove more."""
@@ -160,9 +160,9 @@ def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.flo
     through = distances.of_all_joints(subject.progress).joint.T
     at_welded = np.zeros((len(subject.points), weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
-    least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
+    least = np.maximum(through.min(axis=1, keepdims=True), MIN_DEPTH_CELLS / subject.resolution)
     # Without a path, or with sources outside the body, distances are no evidence.
-    is_near = (through <= NEAR * least) | ~np.isfinite(through)
+    is_near = (through <= NEAR_RATIO * least) | ~np.isfinite(through)
     is_near[:, ~subject.measurable] = True
     is_near[distances.fallback != 0] = True
     is_near |= _attached(subject, at_welded)[welded]
@@ -170,7 +170,7 @@ def _remaining(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.flo
     np.logical_or.at(anchored, welded, is_near)
     connected = connected_weights(at_welded, anchored, subject.edges.edges)
     remaining = np.where(is_near, weights, np.minimum(weights, connected[welded]))
-    ends = ~is_near & (remaining < TAIL * weights.max(axis=1, keepdims=True))
+    ends = ~is_near & (remaining < WEIGHT_FLOOR * weights.max(axis=1, keepdims=True))
     remaining[ends] = 0.0
     return remaining
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.display import count
-from .kinds import KINDS, TITLES
+from .kinds import FINDING_KINDS, TITLES
 
 SEVERITIES = ("error", "warning", "note")
 """The most severe first. Error: it breaks a binding or another program. Warning: most likely a
@@ -127,7 +127,7 @@ def found(
     at = {name: values[name] for name in ("vertices", "faces", "joints") if name in values}
     if not any(map(len, at.values())):
         return
-    kind, more = KINDS[code], len(details) - MAX_LINES
+    kind, more = FINDING_KINDS[code], len(details) - MAX_LINES
     lines = (*details[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))
     message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
     parts, empty = values.get("parts", ()), values.get("empty", ())

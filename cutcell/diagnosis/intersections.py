@@ -17,7 +17,7 @@ from .finding import Finding, found
 from .subject import Subject
 
 MAX_TESTS = 5_000_000
-MAX_CELLS = 64
+GRID_SIDE = 64
 """Along the longest side."""
 MAX_ENTRIES = 40
 """Average number of cells per face: with more, the cells are enlarged."""
@@ -40,7 +40,7 @@ def intersecting_faces(
     """
     corners = points[faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
-    cells = int(np.clip(np.sqrt(len(faces) / 6), 1, MAX_CELLS))
+    cells = int(np.clip(np.sqrt(len(faces) / 6), 1, GRID_SIDE))
     while True:
         first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
         if cells == 1 or (last - first + 1).prod(axis=1).sum() <= MAX_ENTRIES * len(faces):

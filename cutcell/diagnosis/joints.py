@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 from .finding import Finding, found
 from .subject import Subject
 
-OUTSIDE, FAR_OUTSIDE = 0.05, 0.15
+NOTED_OUTSIDE, WARNED_OUTSIDE = 0.05, 0.15
 """Distances from the body of a note and of a warning, as parts of the longest side."""
-SAME = 1e-5
+COINCIDENT_JOINTS = 1e-5
 """Distance of coincident joints, as part of the longest side."""
 
 
@@ -32,11 +32,11 @@ def check_joints(subject: Subject) -> Iterator[Finding]:
 def _outside(subject: Subject) -> Iterator[Finding]:
     moving = np.flatnonzero(subject.rig.skeleton.deform)
     away = subject.joint_distance[moving]
-    outside = away > OUTSIDE
+    outside = away > NOTED_OUTSIDE
     unit = subject.graph.lattice.size
     yield from found(
         "joints-outside",
-        severity="warning" if (away > FAR_OUTSIDE).any() else "note",
+        severity="warning" if (away > WARNED_OUTSIDE).any() else "note",
         joints=moving[outside],
         details=[
             f"{subject.name(j)}: {a * unit:.3g} away"
@@ -51,12 +51,12 @@ def _in_one_place(subject: Subject) -> Iterator[Finding]:
     joints = subject.body.to_unit(skeleton.joints)
     children = np.flatnonzero(skeleton.parents >= 0)
     above = skeleton.parents[children]
-    is_short = np.linalg.norm(joints[children] - joints[above], axis=1) <= SAME
+    is_short = np.linalg.norm(joints[children] - joints[above], axis=1) <= COINCIDENT_JOINTS
     short = children[is_short & skeleton.deform[children] & skeleton.deform[above]]
     details = [f'{name(j)}: on "{name(skeleton.parents[j])}"' for j in short]
     yield from found("zero-length-bones", joints=short, details=details)
     moving = np.flatnonzero(skeleton.deform)
-    pairs = moving[cKDTree(joints[moving]).query_pairs(SAME, output_type="ndarray")]
+    pairs = moving[cKDTree(joints[moving]).query_pairs(COINCIDENT_JOINTS, output_type="ndarray")]
     is_link = (skeleton.parents[pairs] == pairs[:, ::-1]).any(axis=1)
     same = np.unique(pairs[~is_link])
     details = [*map(name, same)]

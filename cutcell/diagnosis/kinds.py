@@ -21,7 +21,7 @@ class Kind(NamedTuple):
     repair: str = ""
 
 
-KINDS = {
+FINDING_KINDS = {
     "unreadable": Kind("Unreadable file", "error", "{error}", "Correct the file as described."),
     "cyclic-joints": Kind("Cycle of joints", "error",
         "{error}", "Remove the cycle from the parents.",
@@ -195,5 +195,5 @@ KINDS = {
 }  # fmt: skip
 """Each code, in the order of reports."""
 
-TITLES = {code: kind.title for code, kind in KINDS.items()}
+TITLES = {code: kind.title for code, kind in FINDING_KINDS.items()}
 """Title of each code, in the order of reports."""

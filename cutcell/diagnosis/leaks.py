@@ -11,12 +11,13 @@ from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics.fallback import REACHED
 from ..geometry.triangles import label_components
+from ..rig.rows import least
 from ..runtime.display import count, share
 from .finding import Finding, Pose, found
 from .subject import Subject
-from .weights import NOTICED, through_body
+from .weights import VISIBLE_WEIGHT, through_body
 
-STRAY = 0.002
+STRAY_WEIGHT = 0.002
 """Part of all weight: a joint with less in the file was hardly meant to move skin."""
 OWNED = 0.01
 """Part of the surface that is nearest to such a joint: a binding would give it about as much."""
@@ -29,7 +30,7 @@ UNLIKE = 0.25
 """Part of a vertex's weight on other joints than those of its mirror image."""
 ASYMMETRIC = 0.01
 """Part of the vertices that may differ as much: artists mend single ones."""
-DEGREES = 45.0
+POSE_DEGREES = 45.0
 """How far a joint turns in the pose that shows a finding."""
 
 
@@ -46,7 +47,7 @@ def _stray(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     nearest = subject.distances.nearest_joint
     reached = subject.distances.fallback == REACHED
     owned = np.bincount(nearest[reached], area[reached], len(shares)) / area.sum()
-    stray = np.flatnonzero((shares > 0) & (shares < STRAY) & (owned > OWNED))
+    stray = np.flatnonzero((shares > 0) & (shares < STRAY_WEIGHT) & (owned > OWNED))
     if not len(stray):
         return
     stray = stray[np.argsort(-owned[stray], kind="stable")]
@@ -87,9 +88,9 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
     at_welded, area = np.ascontiguousarray(weights[subject.first].T), subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     has_bone = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
-    least, number = distances.at_welded.min(axis=0), np.zeros(len(area), np.intp)
-    for j in np.flatnonzero(has_bone & (at_welded.max(axis=1) > NOTICED)).tolist():
-        follows = at_welded[j] > NOTICED
+    to_joint, number = least(distances.rows), np.zeros(len(area), np.intp)
+    for j in np.flatnonzero(has_bone & (at_welded.max(axis=1) > VISIBLE_WEIGHT)).tolist():
+        follows = at_welded[j] > VISIBLE_WEIGHT
         influenced = np.flatnonzero(follows)
         number[influenced] = np.arange(len(influenced))
         between = number[edges[:, follows[edges].all(axis=0)]]
@@ -104,7 +105,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         if not len(islands):
             continue
         through = through_body(subject, subject.first[islands], np.full(len(islands), j))
-        beyond = through - least[islands]
+        beyond = through - to_joint[islands]
         nearest = np.full(len(total), np.inf)
         np.minimum.at(nearest, label, np.where(np.isfinite(beyond), beyond, -np.inf))
         is_away = nearest[label] > AWAY
@@ -150,4 +151,4 @@ def pose_of(subject: Subject, joint: int, vertices: NDArray[np.intp]) -> Pose:
     """Turn a joint about the axis that moves some vertices most."""
     away = subject.rig.mesh.vertices[vertices] - subject.rig.skeleton.joints[joint]
     spread = (away**2).sum(axis=0)
-    return Pose(joint, "xyz"[int(np.argmin(spread))], DEGREES)
+    return Pose(joint, "xyz"[int(np.argmin(spread))], POSE_DEGREES)

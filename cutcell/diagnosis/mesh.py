@@ -18,11 +18,11 @@ UNWELDED = 0.9
 """Minimum ratio of vertices to corners of faces in a soup."""
 HOLES = 8
 """Minimum number of missing triangles of a finding."""
-FLAT = 1e-10
+DEGENERATE_AREA = 1e-10
 """Maximum area of a degenerate face, over its longest side squared."""
-STRAY = 2.0
+STRAY_DISTANCE = 2.0
 """Minimum distance of a stray vertex, in sizes of the rest of the mesh."""
-FEW = 0.01
+MAX_STRAYS = 0.01
 """Maximum share of stray vertices."""
 MAX_WIDTH = 1e-3
 """Maximum width of a crack, as part of the longest side."""
@@ -53,11 +53,11 @@ def check_mesh(subject: Subject) -> Iterator[Finding]:
 def _stray(subject: Subject) -> Iterator[Finding]:
     used = np.flatnonzero(subject.is_used)
     points = subject.rig.mesh.vertices[used]
-    low, high = np.quantile(points, [FEW, 1 - FEW], axis=0)
+    low, high = np.quantile(points, [MAX_STRAYS, 1 - MAX_STRAYS], axis=0)
     size = (high - low).max()
     away = np.maximum(low - points, points - high).max(axis=1)
-    stray = used[away > STRAY * size]
-    if len(stray) <= FEW * len(used):
+    stray = used[away > STRAY_DISTANCE * size]
+    if len(stray) <= MAX_STRAYS * len(used):
         farthest = away.max() / size if size else np.inf
         yield from found("stray-vertices", vertices=stray, farthest=farthest)
 
@@ -153,7 +153,7 @@ def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
 def _degenerate(subject: Subject) -> Iterator[Finding]:
     corners = subject.points[subject.welded[subject.rig.mesh.faces]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    flat = subject.is_collapsed | (subject.areas <= FLAT * longest**2)
+    flat = subject.is_collapsed | (subject.areas <= DEGENERATE_AREA * longest**2)
     degenerate = np.flatnonzero(flat & (subject.graph.omitted == 0))
     if len(degenerate) < len(subject.areas):
         yield from found("degenerate-faces", faces=degenerate)

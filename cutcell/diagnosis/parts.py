@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..animation.falloff.components import SMALL, bone_containment, longest_sides
-from ..animation.falloff.rigid_accessories import CONTACT, nearest_on_body
+from ..animation.falloff.components import MAX_RIGID_SIZE, bone_containment, longest_sides
+from ..animation.falloff.rigid_accessories import CONTACT_CELLS, nearest_on_body
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
@@ -21,17 +21,17 @@ from ..runtime.display import count, share
 from .finding import Finding, found
 from .subject import Subject, bones_distance
 
-FAR = 1.5
+BARE_CELLS = 1.5
 """Cells: skin that is farther from every lattice point inside has none below it."""
 DEPTHS = np.array([0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.65, 0.9, 1.2])
 """Cells below the skin at which it is looked for the inside."""
-THIN, FEW = 0.005, 0.02
+THIN_AREA, THIN_VERTICES = 0.005, 0.02
 """Parts of the surface and of its vertices: less than both may be thin."""
-SAMPLES = 600
+THICKNESS_SAMPLES = 600
 """Vertices at which thickness is measured."""
 ENOUGH = 1.2
 """Cells that a part must be thick to hold lattice points nearly everywhere."""
-RIGID = 0.99
+RIGID_WEIGHT = 0.99
 """A part whose vertices all give more than this to one joint follows it rigidly."""
 MIN_AWAY = 0.05
 """Minimum distance of the part's vertices from that joint's bones, as part of the longest side."""
@@ -39,7 +39,7 @@ BEYOND = 0.1
 """Minimum excess over the nearest joint's distance, in the median, as part of the longest side."""
 ROOM = 0.05
 """Around the box of a part, as part of its longest side, where a joint still lies in it."""
-SHARED = 0.1
+MOVES_WITH_BODY = 0.1
 """A part moves with the body that it touches if that gives more weight to the part's joint."""
 
 
@@ -62,7 +62,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     inside = graph.nodes[graph.node_kind == INTERIOR]
     used = np.zeros(len(points), bool)
     used[faces] = True
-    far = used & (cKDTree(inside).query(points)[0] * resolution > FAR)
+    far = used & (cKDTree(inside).query(points)[0] * resolution > BARE_CELLS)
     if not far.any():
         return
     areas = vertex_areas(points, faces)
@@ -73,7 +73,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     neighbours = np.union1d(start[thin[end]], end[thin[start]])  # at sharp rims nothing is below
     thin[neighbours] |= far[neighbours]
     part, total = areas[thin].sum(), areas.sum()
-    if part < THIN * total and thin.sum() < FEW * used.sum():
+    if part < THIN_AREA * total and thin.sum() < THIN_VERTICES * used.sum():
         return
     deep = depth > 0
     typical = np.quantile(depth[deep], 0.5, weights=areas[far][deep], method="inverted_cdf")
@@ -95,7 +95,7 @@ def _depths(
 
     Large sets are sampled; other vertices take the value of the nearest sample.
     """
-    step = -(-len(places) // SAMPLES)
+    step = -(-len(places) // THICKNESS_SAMPLES)
     chosen = places[::step]
     normals = vertex_normals(points, faces)[chosen]
     below = points[chosen, None] - DEPTHS[:, None] / resolution * normals[:, None]
@@ -109,7 +109,7 @@ def _depths(
 def _unreachable(subject: Subject) -> Iterator[Finding]:
     lost = np.flatnonzero((subject.distances.fallback == UNREACHED) & subject.is_used)
     pieces = np.unique(subject.component[subject.welded[lost]])
-    is_large = (longest_sides(subject.points, subject.component)[pieces] > SMALL).any()
+    is_large = (longest_sides(subject.points, subject.component)[pieces] > MAX_RIGID_SIZE).any()
     follows = "small components follow what they sit on"
     if is_large:
         follows = "they follow their nearest bones in a straight line"
@@ -178,7 +178,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     sizes = np.bincount(label)
     number = np.argsort(np.argsort(-sizes, kind="stable"))  # the largest part is the first
     component = np.where(subject.is_used, number[label], -1)
-    joint = np.where(weights.max(axis=1) > RIGID, weights.argmax(axis=1), -1)
+    joint = np.where(weights.max(axis=1) > RIGID_WEIGHT, weights.argmax(axis=1), -1)
     order = np.argsort(component, kind="stable")
     parts = np.split(order, np.flatnonzero(np.diff(component[order])) + 1)
     far = [
@@ -256,6 +256,6 @@ def _moves_with_the_body(
         return False
     points = subject.points[subject.welded[part]]
     distance, mean = nearest_on_body(subject.graph, on_body, points)
-    touching = distance <= distance.min() + CONTACT / subject.graph.lattice.resolution
+    touching = distance <= distance.min() + CONTACT_CELLS / subject.graph.lattice.resolution
     of_joint = subject.weights[subject.first, joint]
-    return float((mean[touching] @ of_joint).mean()) > SHARED
+    return float((mean[touching] @ of_joint).mean()) > MOVES_WITH_BODY

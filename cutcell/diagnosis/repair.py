@@ -27,8 +27,8 @@ Weights = NDArray[np.float64]
 TURNED = "inverted-faces"
 FACES = {TURNED, "hollow-body", "duplicate-faces", "degenerate-faces"}
 NOTHING = "unchanged, because this repair does not help"
-ROUNDING = 1e-9
-MIN_GAIN = 0.01
+UNCHANGED_WEIGHT = 1e-9
+MIN_IMPROVEMENT = 0.01
 """Part of its severity that a finding must lose for its repair to have helped."""
 
 
@@ -58,7 +58,7 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
     by_code = {finding.code: finding for finding in findings}
     turned, dropped = np.zeros((2, len(rig.mesh.faces)), bool)
     in_vain = []
-    for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
+    for code, mend in WEIGHT_REPAIRS.items():  # of vertices, whose numbers stay
         if code in by_code and rig.weights is not None:
             vertices = by_code[code].vertices
             weights = _allowed(rig, mend(rig, rig.weights.copy(), vertices))
@@ -83,13 +83,13 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
 
 def _helps(rig: Rig, weights: NDArray[np.float64], finding: Finding) -> bool:
     """Return whether new weights, shape (n, j), make a finding less severe."""
-    if np.abs(weights - _weights(rig)).max() < ROUNDING:
+    if np.abs(weights - _weights(rig)).max() < UNCHANGED_WEIGHT:
         return False
-    if WEIGHTS[finding.code] is not _cleaned:
+    if WEIGHT_REPAIRS[finding.code] is not _cleaned:
         return True
     before = Subject(rig)
     after = Subject(rig.with_weights(weights), distances=before.distances)
-    return _excess(after, finding.code) < (1 - MIN_GAIN) * _excess(before, finding.code)
+    return _excess(after, finding.code) < (1 - MIN_IMPROVEMENT) * _excess(before, finding.code)
 
 
 def _excess(subject: Subject, code: str) -> float:
@@ -149,7 +149,7 @@ def _weights(rig: Rig) -> NDArray[np.float64]:
     return rig.weights
 
 
-WEIGHTS: dict[str, Callable[[Rig, Weights, NDArray[np.intp]], Weights]] = {
+WEIGHT_REPAIRS: dict[str, Callable[[Rig, Weights, NDArray[np.intp]], Weights]] = {
     "invalid-weights": _as_they_are,
     "unweighted-vertices": _filled,
     "unnormalised-weights": _as_they_are,

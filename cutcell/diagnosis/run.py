@@ -15,7 +15,7 @@ from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
 from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
-from .kinds import KINDS
+from .kinds import FINDING_KINDS
 from .leaks import check_leaks
 from .mesh import check_mesh
 from .parts import check_far_parts, check_parts
@@ -27,7 +27,7 @@ from .weights import check_weights
 SHAPE_CHECKS = (check_mesh, check_joints, check_parts)
 WEIGHT_CHECKS = (check_weights, check_leaks, check_far_parts, check_sweep)
 
-RESOLUTION = 64
+DIAGNOSED_RESOLUTION = 64
 """R of the graph of a rig that is examined without distances."""
 
 
@@ -140,7 +140,9 @@ def diagnose(
     """
     rig = as_rig(rig)
     if resolution is None:
-        resolution = RESOLUTION if distances is None else distances.graph.lattice.resolution
+        resolution = (
+            DIAGNOSED_RESOLUTION if distances is None else distances.graph.lattice.resolution
+        )
     resolution = check_resolution(resolution)
     if distances is not None:
         expected = data_fingerprint(rig.mesh, rig.skeleton)
@@ -163,4 +165,4 @@ def unreadable(error: CutcellError) -> Finding:
     """Return the finding of a file that cannot be loaded."""
     is_cyclic = "the skeleton has a cycle" in str(error)
     code = "cyclic-joints" if is_cyclic else "unreadable"
-    return Finding(code, KINDS[code].severity, str(error), KINDS[code].advice)
+    return Finding(code, FINDING_KINDS[code].severity, str(error), FINDING_KINDS[code].advice)

@@ -22,7 +22,7 @@ from ..rig.deform_joints.body import Body
 from ..runtime.display import share, shown_name
 from ..runtime.progress import Progress, silent
 
-OUTSIDE = 0.05
+MAX_OUTSIDE_BODY = 0.05
 """Part of the longest side: joints farther from the body have no distances through it."""
 
 
@@ -75,7 +75,7 @@ class Subject:
     def measurable(self) -> NDArray[np.bool_]:
         """Which joints have distances through the body, shape (j,)."""
         has_bone = np.isin(np.arange(len(self.joint_distance)), self.distances.bones.joint)
-        return has_bone & (self.joint_distance <= OUTSIDE)
+        return has_bone & (self.joint_distance <= MAX_OUTSIDE_BODY)
 
     @property
     def welded(self) -> NDArray[np.int32]:

@@ -10,30 +10,29 @@ from numpy.typing import NDArray
 
 from ..geometry.triangles import normals
 from ..pose import axis_rotation
-from ..pose.stretch import DEGREES as STRETCH_DEGREES
-from ..pose.stretch import MAX_SHARE, followed, measure_stretch, turned_edges
+from ..pose.stretch import MAX_SHARE, STRETCH_DEGREES, followed, measure_stretch, turned_edges
 from ..rig.rig import normalised
 from ..runtime.display import share
 from .finding import Finding, Pose, found
 from .subject import Subject
 
-DEGREES = 45.0
+SWEEP_DEGREES = 45.0
 """Each joint turns by this about x, y and z, either way: less than elbows and knees do."""
-STRETCH = 4.0
+TORN_EDGE = 4.0
 """An edge that becomes this much longer, by a chord of 45 degrees at most, joins vertices of which
 one follows and the other stays far from the joint: no smooth bend does that."""
 MIN_STRETCH = 0.03
 """Minimum lengthening of an edge that shows, as part of the longest side."""
 FLIPPED = 0.01
 """Part of the surface: if as much is turned over in one pose, it is more than a crease."""
-LOST = 0.1
+LOST_VOLUME = 0.1
 """Part of the volume of closed components that is lost in one pose."""
 WARNING_FACTOR = 3.0
 """Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
 way that no animation asks of it."""
 MOVES = 1e-3
 """A vertex that follows a joint less does not count as moved by it."""
-ALL = 1 - 1e-9
+WHOLE_WEIGHT = 1 - 1e-9
 """A vertex that follows a joint as much follows it wholly."""
 
 
@@ -45,7 +44,7 @@ def check_sweep(subject: Subject) -> Iterator[Finding]:
     yield from _torn(subject, follows)
     poses = list(_poses(subject, follows))
     yield from _flipped(subject, [flip for flip, _ in poses if flip.size > FLIPPED])
-    yield from _lost(subject, [loss for _, loss in poses if loss.size > LOST])
+    yield from _lost(subject, [loss for _, loss in poses if loss.size > LOST_VOLUME])
 
 
 class _Fault(NamedTuple):
@@ -57,7 +56,11 @@ class _Fault(NamedTuple):
 
 
 def _turns() -> list[tuple[str, float, NDArray[np.float64]]]:
-    return [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
+    return [
+        (axis, way, axis_rotation(axis, way))
+        for axis in "xyz"
+        for way in (SWEEP_DEGREES, -SWEEP_DEGREES)
+    ]
 
 
 def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[tuple[_Fault, _Fault]]:
@@ -82,7 +85,7 @@ def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[tuple[_Fa
         at_corners = moved[corners_of]
         low, high = at_corners.min(axis=0), at_corners.max(axis=0)
         # Vertices that follow wholly turn about the joint, which changes no volume around it.
-        changing = np.flatnonzero((high > 0) & (low < ALL))
+        changing = np.flatnonzero((high > 0) & (low < WHOLE_WEIGHT))
         is_unlike = (high - low)[changing] > MOVES
         before, around = at_first[changing], faces[changing]
         follow = at_corners[:, changing].mean(axis=0)[:, None]
@@ -123,7 +126,7 @@ def _torn(subject: Subject, follows: NDArray[np.float64]) -> Iterator[Finding]:
     torn = list(_torn_edges(subject, follows))
     vertices = subject.vertices_at(_joined(torn))
     evidence = _evidence(subject, torn, MIN_STRETCH, "by {} of the longest side")
-    yield from found("stretched-edges", vertices=vertices, times=STRETCH, **evidence)
+    yield from found("stretched-edges", vertices=vertices, times=TORN_EDGE, **evidence)
 
 
 def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Fault]:
@@ -132,9 +135,9 @@ def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Fau
     joints = subject.graph.lattice.to_unit(subject.rig.skeleton.joints)
     rotations = [turn for _, _, turn in turns]
     turned = np.arange(len(joints))
-    for block in turned_edges(subject.points, edges, follows, joints, turned, rotations, STRETCH):
+    for block in turned_edges(subject.points, edges, follows, joints, turned, rotations, TORN_EDGE):
         longer = block.after - block.before
-        is_torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * block.before)
+        is_torn = (longer > MIN_STRETCH) & (longer > (TORN_EDGE - 1) * block.before)
         for t, (axis, degrees, _) in enumerate(turns):
             for joint in np.unique(block.joint[is_torn[:, t]]):
                 rows = is_torn[:, t] & (block.joint == joint)
@@ -151,7 +154,7 @@ def _flipped(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
 
 
 def _lost(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
-    evidence = _evidence(subject, faults, LOST, "{} of the volume")
+    evidence = _evidence(subject, faults, LOST_VOLUME, "{} of the volume")
     follows = (subject.weights[:, evidence["joints"]] > MOVES).any(axis=1)
     yield from found("lost-volume", vertices=np.flatnonzero(follows), **evidence)
 
@@ -175,5 +178,5 @@ def _evidence(
         "details": list(best.values()),
         "pose": faults[0].pose if faults else None,
         "most": share(most, 1),
-        "degrees": DEGREES,
+        "degrees": SWEEP_DEGREES,
     }

@@ -9,20 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics.fallback import REACHED
+from ..io.weights import STORED_SUM_TOLERANCE
 from ..runtime.display import count
 from .finding import Finding, found
 from .subject import Subject, bones_distance
 
-ROUNDING = 0.01
-"""By how much weights may miss one: three weights of eight bits miss it by 0.006."""
 INFLUENCES = 4
 """What game engines read."""
-NOTICED = 0.05
+VISIBLE_WEIGHT = 0.05
 """A weight below it does not show."""
 LEAP = 0.2
 """Part of the longest side: weight over paths this much longer through the body than straight
 through the air, and than from the nearest joint, has leaked across a gap."""
-FAR = 0.4
+FAR_BEYOND = 0.4
 """As far beyond the nearest joint it is out of place, whatever lies between."""
 DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
@@ -43,7 +42,7 @@ def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
     yield from found("invalid-weights", vertices=np.flatnonzero(np.isnan(sums)))
     empty = np.flatnonzero((weights.sum(axis=1) == 0) & subject.is_used)
     yield from found("unweighted-vertices", vertices=empty)
-    off = np.flatnonzero((np.abs(sums - 1) > ROUNDING) & (sums > 0))
+    off = np.flatnonzero((np.abs(sums - 1) > STORED_SUM_TOLERANCE) & (sums > 0))
     low, high = sums[off].min(initial=np.inf), sums[off].max(initial=0)
     yield from found("unnormalised-weights", vertices=off, low=low, high=high)
     influences = (weights > 0).sum(axis=1)
@@ -67,7 +66,7 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
 
 def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     distances = subject.distances
-    vertex, joint = np.nonzero((weights > NOTICED) & subject.measurable)
+    vertex, joint = np.nonzero((weights > VISIBLE_WEIGHT) & subject.measurable)
     is_reached = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[is_reached], joint[is_reached]
     through = through_body(subject, vertex, joint)
@@ -76,7 +75,7 @@ def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]
         straight[joint == j] = bones_distance(distances.bones, j, points[joint == j])
     beyond = through - distances.least[vertex]
     with np.errstate(invalid="ignore"):
-        leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR)
+        leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR_BEYOND)
     leaked &= np.isfinite(beyond)
     vertex, joint = vertex[leaked], joint[leaked]
     joints, number = np.unique(joint, return_counts=True)

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import LONG, check_integer, one_line, shown
+from ..checks import MAX_SHOWN, check_integer, one_line, shown
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton
 from ..rig.names import folded
@@ -76,7 +76,7 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
         comparable = dict(zip(map(folded, reversed(names)), reversed(names), strict=True))
         close = get_close_matches(folded(joint), comparable, n=3, cutoff=0.4)
         close = [comparable[name] for name in close] or names[:3]
-        query = one_line(joint)[:LONG]
+        query = one_line(joint)[:MAX_SHOWN]
         if not names:
             raise ParameterError(f'there is no joint "{query}": the mesh has no skeleton')
         raise ParameterError(

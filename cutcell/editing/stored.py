@@ -27,7 +27,7 @@ from .layers.layer import Layer
 from .layers.packing import ascending, packed, packed_rows, unpacked_rows, with_keys
 from .layers.packing import naming as naming_part
 
-KEY = "cutcell"
+EDITS_KEY = "cutcell"
 """Entry of a document's asset extras."""
 ABOUT = {"program": f"cutcell {__version__}", "lengths": "in the file's units"}
 """Source of the numbers of a file, and their unit."""
@@ -126,7 +126,7 @@ def save_bound(path: Path, rig: Rig, settings: Mapping[str, Any]) -> tuple[Path,
     extras = saved.json["asset"].setdefault("extras", {})
     if not isinstance(extras, dict):
         return files  # glTF allows any value; another program wrote this one
-    extras[KEY] = dict(settings)
+    extras[EDITS_KEY] = dict(settings)
     text = json_bytes(saved.json)
     write_all({path: pack_glb(text, saved.buffers[0], saved.chunks) if saved.binary else text})
     return files
@@ -141,7 +141,7 @@ def _entry(document: dict[str, Any]) -> dict[str, Any] | None:
     """Return the entry of a glTF document that holds layers."""
     asset = document.get("asset")
     extras = asset.get("extras") if isinstance(asset, dict) else None
-    entry = extras.get(KEY) if isinstance(extras, dict) else None
+    entry = extras.get(EDITS_KEY) if isinstance(extras, dict) else None
     return entry if isinstance(entry, dict) and "layers" in entry else None
 
 

@@ -22,7 +22,7 @@ VERTEX_TOLERANCE = 1e-3
 JOINT_TOLERANCE = 3e-2
 """The same for joints, which artists place by eye."""
 
-MIN_SHARE = 0.5
+MIN_MIRRORED = 0.5
 """Minimum share of vertices with a partner for a character to count as mirrored."""
 
 
@@ -59,7 +59,7 @@ def find_mirror(rig: Rig) -> Mirror:
         if score > share:
             best, share = _mirror(rig, axis, position, vertex, joint), score
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
-    if best is None or matched < MIN_SHARE:
+    if best is None or matched < MIN_MIRRORED:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: at best {matched:.0%} of its vertices "
             "have a partner on the other side of a left and a right joint; bind it without "
@@ -85,7 +85,7 @@ def joint_mirror(rig: Rig) -> Mirror:
         if score > share:
             share, matched = score, float((joint >= 0).mean())
             best = _mirror(rig, axis, position, np.empty(0, np.intp), joint)
-    if best is None or matched < MIN_SHARE:
+    if best is None or matched < MIN_MIRRORED:
         raise SkeletonError(
             f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
             "joints have a partner on the other side"

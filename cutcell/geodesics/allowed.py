@@ -8,9 +8,9 @@ from scipy.sparse import csr_array, vstack
 
 from ..bones.bones import Bones, Sources
 from ..errors import WeightsError
-from ..geometry.sparse_rows import chosen_entries, rows_of_entries, with_columns
 from ..graph import CutCellGraph
 from ..rig.checks import as_array
+from ..rig.rows import chosen_entries, rows_of_entries, with_columns
 from ..runtime.progress import Progress
 from .solver import BoneDistanceSolver
 

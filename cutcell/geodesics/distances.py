@@ -14,7 +14,14 @@ from scipy.sparse import csr_array
 from ..bones.bones import Bones, Sources, least_of_joints
 from ..checks import check_integer, check_number
 from ..errors import ParameterError, SkeletonError
-from ..geometry.sparse_rows import (
+from ..graph import CutCellGraph
+from ..graph.fingerprint import Fingerprint, distance_fingerprint
+from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
+from ..rig import Skeleton
+from ..rig.checks import check_positions
+from ..rig.inputs import SkeletonLike, as_skeleton
+from ..rig.rig import check_units
+from ..rig.rows import (
     chosen_entries,
     column_of_least,
     from_dense,
@@ -25,13 +32,6 @@ from ..geometry.sparse_rows import (
     with_columns,
     with_rows,
 )
-from ..graph import CutCellGraph
-from ..graph.fingerprint import Fingerprint, distance_fingerprint
-from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
-from ..rig import Skeleton
-from ..rig.checks import check_positions
-from ..rig.inputs import SkeletonLike, as_skeleton
-from ..rig.rig import check_units
 from ..runtime.progress import Progress, silent
 from ..runtime.repr import Summarized
 from .allowed import allowed_distances, check_allowed
@@ -121,11 +121,6 @@ class BoneDistances(Summarized):
         number of vertices of the mesh as given.
         """
         return to_dense(self._rows_at(slice(None))).T
-
-    @property
-    def at_welded(self) -> NDArray[np.float64]:
-        """`joint` per welded vertex, shape (j, k), made on access."""
-        return to_dense(self.rows).T
 
     def at(self, joint: Any, vertex: Any) -> NDArray[np.float64]:
         """Return the distances from some joints to some vertices, indexed as `joint` would be."""

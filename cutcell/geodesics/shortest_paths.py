@@ -23,7 +23,7 @@ from ..runtime.compiled import compiled, no_refcount
 from ..runtime.progress import Progress, Shares, Tell, silent
 from ..runtime.threads import in_threads
 
-BATCH = 8
+BONES_TOGETHER = 8
 """Bones whose distances to a node are next to each other: they fill a cache line."""
 SLICES = 8
 """Slices that the body is divided into, and slices of each of these."""
@@ -41,20 +41,23 @@ def shortest_paths(
     Shapes: targets (t,); returns (b, t).
     """
     rank, adjacency = _sort_along_body(graph)
-    groups = -(-bones // BATCH)
-    result = np.empty((groups * BATCH, len(targets)))
+    groups = -(-bones // BONES_TOGETHER)
+    result = np.empty((groups * BONES_TOGETHER, len(targets)))
     begin, end = rank[sources.node], rank[targets]
 
     shares = Shares(progress, "distances", groups)
 
     def one_group(group: int) -> None:
-        column = sources.bone - group * BATCH
-        in_group = (column >= 0) & (column < BATCH)
-        distance, waiting = np.full((len(rank), BATCH), np.inf), np.zeros(len(rank), np.bool_)
+        column = sources.bone - group * BONES_TOGETHER
+        in_group = (column >= 0) & (column < BONES_TOGETHER)
+        distance, waiting = (
+            np.full((len(rank), BONES_TOGETHER), np.inf),
+            np.zeros(len(rank), np.bool_),
+        )
         np.minimum.at(distance, (begin[in_group], column[in_group]), sources.distance[in_group])
         waiting[begin[in_group]] = True
         _sweep_body(adjacency, waiting, distance, lambda done: shares.tell(group, done))
-        result[group * BATCH : (group + 1) * BATCH] = distance[end].T
+        result[group * BONES_TOGETHER : (group + 1) * BONES_TOGETHER] = distance[end].T
         shares.tell(group, 1.0)
 
     in_threads(one_group, range(groups))
@@ -124,7 +127,7 @@ def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
                 waited, waiting[v] = True, False
                 for e in range(indptr[v], indptr[v + 1]):
                     u = indices[e]
-                    for bone in range(BATCH):
+                    for bone in range(BONES_TOGETHER):
                         through = distance[v, bone] + lengths[e]
                         if through < distance[u, bone]:
                             distance[u, bone], waiting[u] = through, True

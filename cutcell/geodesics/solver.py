@@ -13,12 +13,12 @@ from ..animation.any_angle.contraction import Contraction, contract
 from ..animation.any_angle.theta_star import any_angle_paths, least_distances
 from ..animation.bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
 from ..bones.bones import Bones, Sources, bone_samples, bone_segments
-from ..bones.nearest import NodeTree
+from ..bones.nearest import NodeGrid
 from ..geometry.segments import distance_to_segment
-from ..geometry.sparse_rows import from_dense, least
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Skeleton
+from ..rig.rows import from_dense, least
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import submit
 from .shortest_paths import shortest_paths
@@ -34,8 +34,8 @@ class BoneDistanceSolver:
     Attributes
     ----------
     graph : CutCellGraph
-    tree : NodeTree
-        Tree of the nodes that have edges.
+    grid : NodeGrid
+        Finds the nodes with edges that are nearest to points.
     contraction : Contraction or None
         The graph with fewer nodes, with connectivity "any".
     targets : array, shape (k,), int32
@@ -46,7 +46,7 @@ class BoneDistanceSolver:
         # Another thread contracts the graph while bones are fitted.
         self._contract = submit(lambda: contract(graph)) if graph.connectivity == "any" else None
         self.graph = graph
-        self.tree = NodeTree.of(graph)
+        self.grid = NodeGrid.of(graph)
         self.targets = np.arange(graph.first_point, dtype=np.int32)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -82,14 +82,14 @@ class BoneDistanceSolver:
     ) -> tuple[Bones, NDArray[np.bool_]]:
         """Return bones in the unit cube, and (b,) whether `place` aims each at its skin."""
         if leaf == "fit":
-            return fit_bones(self.graph, skeleton, self.tree, allowed)
+            return fit_bones(self.graph, skeleton, self.grid, allowed)
         bones, to_unit = bone_segments(skeleton, leaf), self.graph.lattice.to_unit
         bones = Bones(to_unit(bones.start), to_unit(bones.end), bones.joint)
         return bones, np.zeros(len(bones.joint), np.bool_)
 
     def sources(self, bones: Bones, samples: int) -> Sources:
         """Find the nodes where the distances of bones begin."""
-        return find_sources(self.graph, bones, samples, self.tree, self.contraction)
+        return find_sources(self.graph, bones, samples, self.grid, self.contraction)
 
     def _leaf_distances(
         self, bones: Bones, sources: Sources, aimed: NDArray[np.bool_], progress: Progress
@@ -150,7 +150,7 @@ def find_sources(
     graph: CutCellGraph,
     bones: Bones,
     samples: int,
-    tree: NodeTree,
+    grid: NodeGrid,
     contraction: Contraction | None = None,
 ) -> Sources:
     """Find the nodes nearest to evenly spaced points on each bone (paper, algorithm 2).
@@ -158,7 +158,7 @@ def find_sources(
     In a contracted graph, sources are the representatives of the nearest nodes.
     """
     points, bone = bone_samples(graph, bones, samples)
-    point, nearest = tree.nearest(points)
+    point, nearest = grid.nearest(points)
     node = nearest if contraction is None else contraction.representative(nearest)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     of, begin = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))

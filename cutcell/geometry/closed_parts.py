@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .edges import NONE
 from .triangles import label_components, normals
 
-STEPS = 1 << 20
+TURN_STEPS = 1 << 20
 """Of a full turn about an edge: faces within the same step lie on each other."""
 
 
@@ -83,7 +83,7 @@ def _pair_around_edges(
     reference = out[first][which]
     sine = (along * np.cross(reference, out)).sum(axis=1)
     turn = np.arctan2(sine, (reference * out).sum(axis=1)) / (2 * np.pi)
-    turn = np.rint(turn * STEPS).astype(np.int64) % STEPS
+    turn = np.rint(turn * TURN_STEPS).astype(np.int64) % TURN_STEPS
     # A face whose half-edge runs upward bounds the solid at smaller angles if it faces outward.
     volume = (normals(vertices[faces]) * (vertices[faces[:, 0]] - 0.5)).sum()
     is_last = (start == low) == (volume >= 0)

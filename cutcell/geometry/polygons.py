@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ..errors import MeshError
 
-FLAT = 1e-6
+COLLINEAR = 1e-6
 """Sine of an angle below which three points count as lying on a line."""
 MAX_FANS = 8
 """Corners of a polygon from which a fan is tried."""
@@ -55,8 +55,10 @@ def _cut(outlines: NDArray, polygons: NDArray) -> NDArray[np.intp]:
     flat = _projected(outlines)
     left = np.arange(len(flat))
     # A quadrilateral has two diagonals: if neither is good, one that covers nothing twice is next.
-    tries = [(s, FLAT) for s in range(min(count, MAX_FANS))]
-    tries = [(0, FLAT), (1, FLAT), (0, -FLAT), (1, -FLAT)] if count == 4 else tries
+    tries = [(s, COLLINEAR) for s in range(min(count, MAX_FANS))]
+    tries = (
+        [(0, COLLINEAR), (1, COLLINEAR), (0, -COLLINEAR), (1, -COLLINEAR)] if count == 4 else tries
+    )
     for start, least in tries:
         turned = (fan + start) % count
         fits = (_sines(flat[left][:, turned]) > least).all(axis=1)
@@ -133,10 +135,10 @@ def _is_ear(points: NDArray, shape: NDArray, k: int) -> bool:
 
     Only corners that are not convex can be in the way, those on the new side included.
     """
-    if not shape[k] > FLAT:
+    if not shape[k] > COLLINEAR:
         return False
     a, b, c = points[k - 1], points[k], points[(k + 1) % len(points)]
-    others = points[shape <= FLAT]
+    others = points[shape <= COLLINEAR]
     inside = np.minimum.reduce([_cross(p, q, others) for p, q in ((a, b), (b, c), (c, a))])
     is_corner = (others[:, None] == np.stack([a, b, c])).all(axis=2).any(axis=1)
-    return not ((inside >= -FLAT * _cross(a, b, c)) & ~is_corner).any()
+    return not ((inside >= -COLLINEAR * _cross(a, b, c)) & ~is_corner).any()

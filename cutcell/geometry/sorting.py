@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-CELLS = 64
+GRID_CELLS = 64
 """Along each side of the grid that points are sorted into."""
 
 
@@ -12,8 +12,8 @@ def spatial_order(points: NDArray[np.float64]) -> NDArray[np.intp]:
 
     Near points are then near in memory, so that large meshes make better use of the cache.
     """
-    x, y, z = (points * CELLS).astype(np.int64).T
-    return np.argsort((x * CELLS + y) * CELLS + z, kind="stable")
+    x, y, z = (points * GRID_CELLS).astype(np.int64).T
+    return np.argsort((x * GRID_CELLS + y) * GRID_CELLS + z, kind="stable")
 
 
 def sort_by_group(

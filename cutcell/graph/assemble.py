@@ -24,7 +24,7 @@ def assemble(
     hits: Sequence[RayHits],
     inside: Sequence[InsideIntervals],
     connectivity: int | str,
-    winding_threshold: float,
+    tau: float,
 ) -> CutCellGraph:
     """Build the graph of a surface from the hits of the rays and their intervals inside."""
     resolution, vertices, mesh_edges = surface.resolution, surface.vertices, surface.edges
@@ -88,7 +88,7 @@ def assemble(
         interior=points,
         inverted=surface.inverted,
         omitted=surface.omitted,
-        winding_threshold=winding_threshold,
+        winding_threshold=tau,
     )
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled
+from ..runtime.compiled import no_refcount
 from .interior import OUTSIDE, point_number, point_on_ray
 from .segments import NONE
 
 
-@compiled
+@no_refcount
 def fill_edges(where, intervals, table, ends, edges, lengths):
     """List the kept segments along one axis as edges.
 
@@ -38,17 +38,15 @@ def fill_edges(where, intervals, table, ends, edges, lengths):
             lengths[e] = position[high[r]] - previous_position
 
 
-@compiled
-def lattice_steps(nodes, edges, first, last):
+def lattice_steps(
+    nodes: NDArray[np.float64], edges: NDArray[np.int32], first: int, last: int
+) -> NDArray[np.int32]:
     """List the neighbours of interior points, +x, +y, +z, -x, -y, -z, shape (last - first, 6)."""
     steps = np.full((last - first, 6), OUTSIDE, np.int32)
-    for e in range(len(edges)):
-        low, high = edges[e, 0], edges[e, 1]
-        if min(low, high) >= first and max(low, high) < last:
-            for axis in range(3):
-                if nodes[low, axis] < nodes[high, axis]:
-                    steps[low - first, axis] = high - first
-                    steps[high - first, 3 + axis] = low - first
+    low, high = edges[((edges >= first) & (edges < last)).all(axis=1)].T
+    axis = (nodes[low] < nodes[high]).argmax(axis=1)
+    steps[low - first, axis] = high - first
+    steps[high - first, 3 + axis] = low - first
     return steps
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.threads import in_threads
 from .rays import in_space
 from .segments import InsideIntervals
@@ -52,7 +52,12 @@ class InteriorPoints:
 
     def put_positions(self, out: NDArray[np.float64]) -> None:
         """Write the positions of the points in the unit cube into an array (len, 3)."""
-        _put_positions(self.resolution, *self.table, out)
+        count = self.last - self.first + 1
+        column = np.repeat(np.arange(self.resolution**2), np.diff(self.start))
+        out[:, 0] = np.repeat((column // self.resolution + 0.5) / self.resolution, count)
+        out[:, 1] = np.repeat((column % self.resolution + 0.5) / self.resolution, count)
+        z = np.arange(len(self)) + np.repeat(self.first - self.number[:-1], count)
+        out[:, 2] = (z + 0.5) / self.resolution
 
 
 def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> InteriorPoints:
@@ -61,13 +66,14 @@ def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> Inter
     points = _number_stretches(along_z.ray, along_z.first, along_z.last, resolution)
     # Where the surface passes through a lattice point, or an open mesh's winding number is close
     # to the threshold, a point may have kept segments along x or y only.
-    missed = in_threads(
-        lambda axis: _missed_points(
-            inside[axis].ray, inside[axis].first, inside[axis].last, axis, resolution, *points.table
-        ),
-        (0, 1),
-    )
-    extra = np.unique(np.concatenate(missed))
+
+    def missed_along(axis: int) -> NDArray[np.int64]:
+        ray, first, last = inside[axis].ray, inside[axis].first, inside[axis].last
+        missed = np.empty(int((last - first + 1).sum()), np.int64)
+        count = _missed_points(ray, first, last, axis, resolution, *points.table, missed)
+        return missed[:count]
+
+    extra = np.unique(np.concatenate(in_threads(missed_along, (0, 1))))
     if len(extra) == 0:
         return points
     single = (extra % resolution).astype(np.int32)
@@ -88,7 +94,7 @@ def _number_stretches(
     return InteriorPoints(resolution, start, first, last, number)
 
 
-@compiled(inline="always")
+@inlined
 def point_number(start, first, last, number, column, z):
     """Return the number of the point at z in a column, or OUTSIDE."""
     for s in range(start[column], start[column + 1]):
@@ -97,32 +103,21 @@ def point_number(start, first, last, number, column, z):
     return np.int64(OUTSIDE)
 
 
-@compiled(inline="always")
+@inlined
 def point_on_ray(axis, ray, k, resolution):
     """Return column and z of the lattice point k on a ray."""
     x, y, z = in_space(axis, ray // resolution, ray % resolution, k)
     return x * resolution + y, z
 
 
-@compiled
-def _missed_points(ray, first_k, last_k, axis, resolution, start, first, last, number):
+@no_refcount
+def _missed_points(ray, first_k, last_k, axis, resolution, start, first, last, number, missed):
     """List the lattice numbers of the points along one axis that the columns lack."""
-    missed, count = np.empty(max(0, (last_k - first_k + 1).sum()), np.int64), 0
+    count = 0
     for r in range(len(ray)):
         for k in range(first_k[r], last_k[r] + 1):
             column, z = point_on_ray(axis, ray[r], k, resolution)
             if point_number(start, first, last, number, column, z) == OUTSIDE:
                 missed[count] = column * resolution + z
                 count += 1
-    return missed[:count].copy()
-
-
-@compiled
-def _put_positions(resolution, start, first, last, number, out):
-    for column in range(resolution * resolution):
-        for s in range(start[column], start[column + 1]):
-            for z in range(first[s], last[s] + 1):
-                n = number[s] + z - first[s]
-                out[n, 0] = (column // resolution + 0.5) / resolution
-                out[n, 1] = (column % resolution + 0.5) / resolution
-                out[n, 2] = (z + 0.5) / resolution
+    return count

@@ -11,7 +11,7 @@ from ..errors import MeshError
 from ..geometry.vectors import TIE
 from ..method import check_resolution
 from ..rig import TriangleMesh
-from ..rig.checks import LARGEST, check_positions
+from ..rig.checks import MAX_COORDINATE, check_positions
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +53,10 @@ class Lattice:
         check_positions(mesh.vertices, "vertex", MeshError)
         low, high = mesh.bounds
         size = float((high - low).max())
-        if size * LARGEST < 1:
+        if size * MAX_COORDINATE < 1:
             raise MeshError(
                 f"the mesh is only {size:.3g} long, too small to compute with (the limit is "
-                f"{1 / LARGEST:g}); scale the whole character up"
+                f"{1 / MAX_COORDINATE:g}); scale the whole character up"
             )
         # Dividing, not multiplying by 1 / size, maps a mesh scaled by a power of two to the
         # very same numbers.

@@ -27,10 +27,10 @@ LEAD = 0.25
 FLOAT32_STEP = 2.0**-20
 """Eight units in the last place of float32 near 1: past a triangle for sure, seldom past two."""
 
-TIE = 4 * FLOAT32_STEP
+SHARED_CROSSING = 4 * FLOAT32_STEP
 """Neighbouring triangles hit within this distance of each other share one crossing."""
 
-MAX_LAYERS = 100_000
+MAX_RAY_HITS = 100_000
 """Hits followed along a ray; a soup deeper than this is no body."""
 
 
@@ -64,7 +64,7 @@ def cast_rays_embree(vertices: Vertices, faces: Faces, resolution: int, axis: in
         origins, directions = _rays(resolution, axis, direction)
         live, last = np.arange(resolution**2), np.full(resolution**2, -1, np.int64)
         step = np.full(resolution**2, FLOAT32_STEP)
-        for _ in range(MAX_LAYERS):
+        for _ in range(MAX_RAY_HITS):
             hit = scene.run(origins[live], directions[live]).astype(np.int64)
             live, hit = live[hit >= 0], hit[hit >= 0]
             if len(live) == 0:
@@ -188,7 +188,7 @@ def _repeated(
         near = (
             (ray[back:] == ray[:-back])
             & (sign[back:] == sign[:-back])
-            & (position[back:] - position[:-back] <= TIE)
+            & (position[back:] - position[:-back] <= SHARED_CROSSING)
         )
         if not near.any():
             continue

@@ -21,17 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.vectors import triangle_normal
-from ..runtime.compiled import compiled, copy_to
+from ..runtime.compiled import inlined, no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
 
-CONTACT = 1e-9
+CONTACT_DISTANCE = 1e-9
 """Distance of two faces that touch, at most: above rounding."""
 MANY_HITS = 64
 """Rays with more hits are sorted by numpy."""
+FIRST_HITS = 2**14
+"""Hits for which memory is taken at first; it is doubled when needed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,13 +68,23 @@ def cast_rays(
     """
     projected = np.ascontiguousarray(vertices[:, AXES[axis]])
     flip = -1 if axis == 1 else 1  # x cross z points along -y
-    counts, position, triangle, sign = _rasterise(projected, faces, resolution, flip)
-    start = np.append(0, np.cumsum(counts))
-    for ray in np.flatnonzero(counts > MANY_HITS):
-        hits = slice(start[ray], start[ray + 1])
-        order = np.lexsort((triangle[hits], sign[hits], position[hits]))
-        for column in (position, triangle, sign):
-            column[hits] = column[hits][order]
+    at, hits, size, face = np.empty(FIRST_HITS), np.empty((FIRST_HITS, 3), np.int32), 0, 0
+    while True:
+        face, size = _rasterise(projected, faces, resolution, flip, face, size, at, hits)
+        if face == len(faces):
+            break
+        at, hits = (np.concatenate([buffer, np.empty_like(buffer)]) for buffer in (at, hits))
+    at, hits = at[:size], hits[:size]
+    start = np.append(0, np.cumsum(np.bincount(hits[:, 0], minlength=resolution**2)))
+    by_ray = np.empty(size), np.empty(size, np.int32), np.empty(size, np.int8)
+    _sort_by_ray(at, hits, start, start[:-1].copy(), *by_ray)
+    position, triangle, sign = by_ray
+    many = np.repeat(np.diff(start) > MANY_HITS, np.diff(start))
+    if many.any():
+        ray = np.repeat(np.arange(resolution**2), np.diff(start))[many]
+        order = np.lexsort((triangle[many], sign[many], position[many], ray))
+        for column in by_ray:
+            column[many] = column[many][order]
     return RayHits(start, position, triangle, sign)
 
 
@@ -93,7 +105,9 @@ def part_at_contacts(hits: RayHits, part: NDArray[np.int32]) -> RayHits:
     """
     ray = np.repeat(np.arange(len(hits.start) - 1), np.diff(hits.start))
     of, sign, triangle = part[hits.triangle], hits.sign.copy(), hits.triangle.copy()
-    is_contact = (np.diff(hits.position) <= CONTACT) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    is_contact = (
+        (np.diff(hits.position) <= CONTACT_DISTANCE) & (ray[1:] == ray[:-1]) & (np.diff(sign) > 0)
+    )
     is_contact &= (of[1:] != of[:-1]) & (of[1:] >= 0) & (of[:-1] >= 0)
     k = np.flatnonzero(is_contact)
     for column in (sign, triangle):
@@ -123,7 +137,7 @@ def points_on_rays(
     return points
 
 
-@compiled(inline="always")
+@inlined
 def in_space(axis, u, v, along):
     """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""
     if axis == 0:
@@ -133,11 +147,14 @@ def in_space(axis, u, v, along):
     return u, v, along
 
 
-@compiled
-def _rasterise(vertices, faces, resolution, flip):
-    """Return the number of hits of each ray; then position, triangle and sign, ray by ray."""
-    at, hits, size = np.empty(256), np.empty((256, 3), np.int32), 0
-    for f in range(len(faces)):
+@no_refcount
+def _rasterise(vertices, faces, resolution, flip, face, size, at, hits):
+    """Append the hits of all faces from one on, in any order: position; ray, face and sign.
+
+    Returns the face whose hits no longer fit, or the number of faces, and the number of hits.
+    """
+    for f in range(face, len(faces)):
+        before = size
         u0, u1, u2 = vertices[faces[f, 0], 0], vertices[faces[f, 1], 0], vertices[faces[f, 2], 0]
         end = min(resolution, first_at_least(max(u0, u1, u2), resolution))
         for i in range(first_at_least(min(u0, u1, u2), resolution), end):
@@ -146,17 +163,16 @@ def _rasterise(vertices, faces, resolution, flip):
             j = first_at_least(low_v, resolution)
             while j < resolution and (j + 0.5) / resolution < high_v:
                 if size == len(at):
-                    at, hits = grown(at), grown(hits)
-                pv = (j + 0.5) / resolution
-                at[size] = height_between(low_v, low_a, high_v, high_a, pv)
+                    return f, before
+                at[size] = height_between(low_v, low_a, high_v, high_a, (j + 0.5) / resolution)
                 hits[size, 0] = i * resolution + j
                 hits[size, 1], hits[size, 2] = f, flip * side
                 size += 1
                 j += 1
-    return _by_ray(at[:size], hits[:size], resolution * resolution)
+    return len(faces), size
 
 
-@compiled
+@no_refcount
 def _projected_area(vertices, faces):
     """Sum the areas of all triangles projected along x, along y and along z."""
     total = 0.0
@@ -167,31 +183,28 @@ def _projected_area(vertices, faces):
     return total / 2
 
 
-@compiled
-def _by_ray(at, hits, rays):
-    counts = np.zeros(rays, np.int64)
-    for k in range(len(hits)):
-        counts[hits[k, 0]] += 1
-    cursor = np.cumsum(counts) - counts
-    position = np.empty(len(hits))
-    triangle, sign = np.empty(len(hits), np.int32), np.empty(len(hits), np.int8)
+@no_refcount
+def _sort_by_ray(at, hits, start, cursor, position, triangle, sign):
+    """Sort hits by ray and along it, but for rays with many; `cursor` begins as `start` does."""
     for k in range(len(hits)):
         n = cursor[hits[k, 0]]
         position[n], triangle[n], sign[n] = at[k], hits[k, 1], hits[k, 2]
         cursor[hits[k, 0]] += 1
-    _sort_rays(counts, position, triangle, sign)
-    return counts, position, triangle, sign
+    for ray in range(len(cursor)):
+        begin, end = start[ray], start[ray + 1]
+        if end - begin > MANY_HITS:  # an insertion sort would be slow
+            continue
+        for k in range(begin + 1, end):
+            p, t, s = position[k], triangle[k], sign[k]
+            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
+                position[k] = position[k - 1]
+                triangle[k] = triangle[k - 1]
+                sign[k] = sign[k - 1]
+                k -= 1
+            position[k], triangle[k], sign[k] = p, t, s
 
 
-@compiled
-def grown(array):
-    """Return a copy of an array with twice the capacity."""
-    larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
-    copy_to(array.reshape(-1), larger.reshape(-1))
-    return larger
-
-
-@compiled(inline="always")
+@inlined
 def first_at_least(coordinate, resolution):
     """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
     i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
@@ -202,7 +215,7 @@ def first_at_least(coordinate, resolution):
     return i
 
 
-@compiled
+@no_refcount
 def column_span(vertices, faces, f, pu):
     """Intersect the column line u = pu with the triangle f.
 
@@ -225,7 +238,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@compiled(inline="always")
+@inlined
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its left end.
 
@@ -238,31 +251,14 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@compiled(inline="always")
+@inlined
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
-@compiled
-def _sort_rays(counts, position, triangle, sign):
-    end = 0
-    for ray in range(len(counts)):
-        begin, end = end, end + counts[ray]
-        if end - begin > MANY_HITS:  # an insertion sort would be slow
-            continue
-        for k in range(begin + 1, end):
-            p, t, s = position[k], triangle[k], sign[k]
-            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
-                position[k] = position[k - 1]
-                triangle[k] = triangle[k - 1]
-                sign[k] = sign[k - 1]
-                k -= 1
-            position[k], triangle[k], sign[k] = p, t, s
-
-
-@compiled(inline="always")
+@inlined
 def _after(position0, sign0, triangle0, position1, sign1, triangle1):
     if position0 != position1:
         return position0 > position1

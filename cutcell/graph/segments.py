@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.compiled import compiled
+from ..runtime.compiled import no_refcount
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads
 from .rays import RayHits, first_at_least, points_on_rays
@@ -94,6 +94,12 @@ class Segments:
 class RayWindingNumbers(Protocol):
     """Winding numbers of a surface along its rays: exact ones by a treecode, or libigl's."""
 
+    def in_gaps(self, axis: int) -> NDArray[np.float64] | None:
+        """Return the winding number in the gap before each hit, shape (c,), if the mesh is closed.
+
+        Then it is constant between two hits, and below tau beyond the first and last of a ray.
+        """
+
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """Return which lattice points may be inside before a ray's first hit or beyond its last.
 
@@ -101,7 +107,7 @@ class RayWindingNumbers(Protocol):
         """
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
-        """Return the winding numbers at the midpoints, shape (s,)."""
+        """Return w or tau + floor(w - tau), of the winding number w of each midpoint, (s,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +116,9 @@ class PointwiseWindingNumbers:
 
     surface: Surface
     function: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+    def in_gaps(self, axis: int) -> None:
+        """Return None: an approximate number is not constant."""
 
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """See `RayWindingNumbers`."""
@@ -124,7 +133,7 @@ class PointwiseWindingNumbers:
 
 def inside_intervals(
     hits: Sequence[RayHits],
-    winding_threshold: float,
+    tau: float,
     winding_numbers: RayWindingNumbers,
     resolution: int,
     report: Tell = lambda done: None,
@@ -134,9 +143,16 @@ def inside_intervals(
     def keep(chunk: tuple[int, NDArray[np.intp]]) -> InsideIntervals:
         axis, rays = chunk
         segments = divide_rays(hits[axis], axis, resolution, rays, beyond_hits[axis])
-        w = winding_numbers.at_midpoints(segments)
-        return segments.intervals(w >= winding_threshold)
+        # The winding number w, or tau + floor(w - tau): either is at least tau where the other is.
+        floored_w = winding_numbers.at_midpoints(segments)
+        return segments.intervals(floored_w >= tau)
 
+    def keep_gaps(axis: int) -> InsideIntervals:
+        return gap_intervals(hits[axis], gaps[axis] >= tau, resolution)
+
+    gaps = [winding_numbers.in_gaps(axis) for axis in range(3)]
+    if gaps[0] is not None:
+        return in_threads(keep_gaps, range(3), report)
     beyond_hits = [winding_numbers.beyond_hits(axis) for axis in range(3)]
     chunks = [
         (axis, rays)
@@ -151,6 +167,20 @@ def inside_intervals(
             InsideIntervals(**{n: np.concatenate([part[n] for part in parts]) for n in parts[0]})
         )
     return inside
+
+
+def gap_intervals(hits: RayHits, is_kept: NDArray[np.bool_], resolution: int) -> InsideIntervals:
+    """Return the intervals of kept gaps, each before a hit, (c,); not those from a wall."""
+    count = np.diff(hits.start)
+    is_kept[hits.start[:-1][count > 0]] = False
+    high = np.flatnonzero(is_kept).astype(np.int32)
+    ray = np.repeat(np.arange(len(count), dtype=np.int32), count)[high]
+    # As `first_at_least`.
+    position, half = hits.position, 0.5
+    first = np.maximum(np.ceil(position * resolution - half), 0).astype(np.int32)
+    first -= (first > 0) & ((first - half) / resolution >= position)
+    first += (first + half) / resolution < position
+    return InsideIntervals(ray, first[high - 1], first[high] - 1, high - 1, high)
 
 
 def _chunks(
@@ -172,19 +202,18 @@ def divide_rays(
 
     `beyond_hits`, shape (R * R, 2): as of `RayWindingNumbers`.
     """
-    return Segments(
-        axis, resolution, *_divide(hits.start, hits.position, resolution, rays, beyond_hits)
-    )
+    count = int(np.diff(hits.start)[rays].sum()) + len(rays) * (resolution + 1)
+    types = np.int32, np.int32, np.int32, np.bool_, np.bool_, np.float64
+    out = [np.empty(count, dtype) for dtype in types]
+    count = _divide(hits.start, hits.position, resolution, rays, beyond_hits, *out)
+    return Segments(axis, resolution, *(values[:count] for values in out))
 
 
-@compiled
-def _divide(start, position, resolution, rays, beyond_hits):
-    count = 0
-    for r in rays:
-        count += start[r + 1] - start[r] + resolution + 1
-    ray, gap = np.empty(count, np.int32), np.empty(count, np.int32)
-    number, middle = np.empty(count, np.int32), np.empty(count)
-    from_hit, to_hit = np.empty(count, np.bool_), np.empty(count, np.bool_)
+@no_refcount
+def _divide(
+    start, position, resolution, rays, beyond_hits, ray, gap, number, from_hit, to_hit, middle
+):
+    """Fill in the arrays of `Segments`; return how many there are."""
     s = 0
     for r in rays:
         begin, end = start[r], start[r + 1]
@@ -204,4 +233,4 @@ def _divide(start, position, resolution, rays, beyond_hits):
                 low = high
                 s += 1
             first = last
-    return ray[:s], gap[:s], number[:s], from_hit[:s], to_hit[:s], middle[:s]
+    return s

@@ -1,18 +1,23 @@
-"""Reading whole files, with errors that name them."""
+"""What is loaded: files, bytes, open files and pipes; errors that name the file."""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
+from typing import BinaryIO
 
 from ..errors import CutcellError, FileError
 from ..runtime.writing import reason
+from .formats import BY_SUFFIX
 
-LONGEST = 200
+MAX_QUOTED = 200
 """Characters of what another library says."""
 LONGEST_SENTENCE = 1000
-LARGEST = 2**28
+MAX_FILE_BYTES = 2**28
 """Bytes of a file that another one names."""
 
 
@@ -64,7 +69,7 @@ def read_bytes(path: Path, most: int | None = None) -> bytes:
 def one_line(error: Exception) -> str:
     """Return what another library says of a file, as part of a sentence."""
     message = " ".join(str(error).split()) or type(error).__name__
-    return message if len(message) <= LONGEST else f"{message[:LONGEST]}..."
+    return message if len(message) <= MAX_QUOTED else f"{message[:MAX_QUOTED]}..."
 
 
 def read_text(path: Path) -> str:
@@ -75,7 +80,9 @@ def read_text(path: Path) -> str:
         raise FileError(f"{path.name}: is not a text file (byte {e.start} is not UTF-8)") from None
 
 
-def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LARGEST) -> bytes:
+def read_beside(
+    path: Path, names: Iterable[str], label: str, largest: int = MAX_FILE_BYTES
+) -> bytes:
     """Return what is in the first of some files that is there, in the folder or below it.
 
     A file may name others by their places on another machine.
@@ -167,3 +174,41 @@ def has_halves(text: str) -> bool:
 
 HALVES = "a name in it holds half of a character (a lone surrogate), for which � stands"
 """The warning of a file with such names."""
+
+
+Input = str | os.PathLike[str] | bytes | bytearray | memoryview | BinaryIO
+ADDRESS = re.compile(r"[A-Za-z][\w+.-]+:/")
+OPENED = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
+STL = 84
+"""Bytes of the start of a binary STL, which is what another file is taken for."""
+
+
+@contextmanager
+def as_file(source: Input) -> Iterator[Path]:
+    """Yield the path of a file that can be read again, and whose ending says what it holds."""
+    name: object = "bytes"
+    if isinstance(source, str | os.PathLike):
+        path = Path(source)
+        exists = os.path.exists(path)  # unlike `Path.exists`, of any name
+        if ADDRESS.match(str(path)) and not exists:
+            address = re.sub(":/+", "://", str(source), count=1)  # a `Path` has one slash less
+            raise FileError(f"{address} is an address, not a file. Download the file first")
+        if not (exists and path.is_fifo()) and not str(path).startswith(OPENED):
+            yield path
+            return
+        name, data = path.name, read_bytes(path)
+    elif isinstance(source, bytes | bytearray | memoryview):
+        data = bytes(source)
+    else:
+        name, data = getattr(source, "name", name), source.read()
+        if not isinstance(data, bytes):
+            raise FileError(f'{name}: is open as text; open it as bytes: open(path, "rb")')
+    start = data.removeprefix(b"\xef\xbb\xbf")
+    matches = {end: re.match(one.suffixes[end], start) for end, one in BY_SUFFIX.items()}
+    lengths = {end: match.end() for end, match in matches.items() if match}
+    ending = max(lengths, key=lengths.__getitem__, default=".stl" if len(start) >= STL else "")
+    stem = Path(str(name).strip("<>")).stem or "bytes"
+    with TemporaryDirectory() as folder:
+        path = Path(folder, stem + ending)
+        path.write_bytes(data)
+        yield path

@@ -9,11 +9,10 @@ from ..errors import FileError, SkeletonError
 from ..rig import Rig
 from ..rig.inputs import as_rig
 from ..runtime.writing import check_place, write_all
-from .files import naming, read_bytes
+from .files import Input, as_file, naming, read_bytes
 from .formats import BY_SUFFIX, GLTF, described, suffixes
 from .formats.gltf import keeps_document
 from .gltf.container import MAGIC
-from .inputs import Input, as_file
 from .materials.gltf_colored import color_notes
 from .skeletons import with_skeleton
 

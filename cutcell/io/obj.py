@@ -14,9 +14,9 @@ from ..errors import FileError, MeshError
 from ..geometry.polygons import cut_polygons
 from ..rig import TriangleMesh
 
-MOST = 2**31 - 2
+MAX_VERTEX_NUMBER = 2**31 - 2
 """Number of a vertex, counted from 0."""
-KINDS = ("v", "vt", "vn", "f", "usemtl", "mtllib")
+OBJ_KEYWORDS = ("v", "vt", "vn", "f", "usemtl", "mtllib")
 """Lines that are read."""
 FORMS = {"": (0,), "/N": (0, 1), "//N": (0, 2), "/N/N": (0, 1, 2)}
 """Corners of faces after their vertex, and what they refer to: vertex, place, normal."""
@@ -47,7 +47,7 @@ class _Lines:
 
 def parse_obj(text: str) -> ObjMesh:
     """Read vertices and faces; polygons are cut into triangles."""
-    lines = {kind: _Lines([], []) for kind in KINDS}
+    lines = {kind: _Lines([], []) for kind in OBJ_KEYWORDS}
     for number, line in numbered_lines(text):
         kind = line.partition(" ")[0]
         if kind not in lines:
@@ -65,8 +65,8 @@ def parse_obj(text: str) -> ObjMesh:
     places = _lenient(lines["vt"].text, 2, 0.0)
     places[:, 1] = 1 - places[:, 1]
     names = [" ".join(line.split()[1:]) for line in lines["usemtl"].text]
-    number = {name: k for k, name in enumerate(dict.fromkeys(names))}
-    used = np.array([-1, *(number[name] for name in names)], np.int32)
+    materials = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    used = np.array([-1, *(materials[name] for name in names)], np.int32)
     libraries = (" ".join(line.split()[1:]) for line in lines["mtllib"].text)
     return ObjMesh(
         mesh,
@@ -74,7 +74,7 @@ def parse_obj(text: str) -> ObjMesh:
         _of_corners(_lenient(lines["vn"].text, 3, nan), at[:, 2][triangles], (nan, nan, nan)),
         _colors(lines["v"].text),
         used[_before(lines["usemtl"], faces)][polygons],
-        tuple(number),
+        tuple(materials),
         tuple(dict.fromkeys(libraries)),
     )
 
@@ -188,7 +188,7 @@ def _numbered(lines: dict[str, _Lines], sizes: NDArray, count: int) -> NDArray[n
     at = stored - (stored > 0)
     at[stored == 0] = -1
     if (stored < 0).any():
-        before = np.stack([_before(lines[kind], faces) for kind in KINDS[:3]], axis=1)
+        before = np.stack([_before(lines[kind], faces) for kind in OBJ_KEYWORDS[:3]], axis=1)
         at = np.where(stored < 0, np.repeat(before, sizes, axis=0) + stored, at)
     bad = np.flatnonzero((at[:, 0] < 0) | (at[:, 0] >= count))
     if len(bad):
@@ -227,9 +227,9 @@ def _corner(word: str, line: int) -> tuple[int, int, int]:
         vertex = int(parts[0])
     except ValueError:
         raise FileError(f'line {line}: "{word[:40]}" is not a corner of a face') from None
-    if vertex > MOST + 1:
+    if vertex > MAX_VERTEX_NUMBER + 1:
         raise FileError(f"line {line}: vertex {word[:40]} is out of range")
-    return max(vertex, -MOST), _index(parts[1]), _index(parts[2])
+    return max(vertex, -MAX_VERTEX_NUMBER), _index(parts[1]), _index(parts[2])
 
 
 def _index(word: str) -> int:
@@ -237,7 +237,7 @@ def _index(word: str) -> int:
         index = int(word)
     except ValueError:
         return 0
-    return index if abs(index) <= MOST else 0
+    return index if abs(index) <= MAX_VERTEX_NUMBER else 0
 
 
 def _of_corners(

@@ -12,19 +12,18 @@ from numpy.typing import NDArray
 
 from ..errors import FileError, SkeletonError
 from ..rig import Clip, Rig, Skeleton
+from ..rig.transforms import moved
 from .files import naming
 from .formats import BY_SUFFIX, described, suffixes
 from .gltf.container import Document
 from .gltf.influences import read_deform
 from .gltf.nodes import Nodes
 from .gltf.read.added_skins import has_volume
-from .gltf.read.bones import find_bones
+from .gltf.read.bones import BOX_MARGIN, find_bones
 from .gltf.read.clips import read_clips
 from .gltf.read.skins import Bind, read_bind, read_skeleton
 from .weights import with_deform
 
-MARGIN = 0.1
-"""How far joints may lie outside of the bounding box, in diagonals of it."""
 SIMILAR = 0.5
 """The scene's places are chosen unless those in the bind space fit better than by this factor."""
 MIN_FIT = 0.2
@@ -49,8 +48,8 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
     with naming(path):
         kind = path.suffix.lower()
         if kind not in suffixes("read_skeleton"):
-            choices = described("read_skeleton")
-            raise FileError(f'no skeleton can be read from "{kind}"; give {choices}')
+            readable = described("read_skeleton")
+            raise FileError(f'no skeleton can be read from "{kind}"; give {readable}')
         skeleton, world, stored, clips = BY_SUFFIX[kind].module.read_skeleton(path)
         if not len(skeleton.joints):
             raise SkeletonError(
@@ -73,7 +72,7 @@ def with_skeleton(rig: Rig, path: Path) -> Rig:
 
 def _in_scene(skeleton: Skeleton, world: NDArray[np.float64]) -> Skeleton:
     """Return a skeleton moved by a matrix (4, 4)."""
-    joints, turned = skeleton.joints @ world[:3, :3].T + world[:3, 3], skeleton.orientations
+    joints, turned = moved(skeleton.joints, world), skeleton.orientations
     if turned is not None:
         left, _, right = np.linalg.svd(world[:3, :3])
         turned = left @ right @ turned
@@ -84,7 +83,7 @@ def _fit(rig: Rig, skeleton: Skeleton) -> float:
     """Return how well joints fit a mesh: the share near it, times the ratio of sizes below one."""
     low, high = rig.mesh.bounds
     size, extent = np.linalg.norm(high - low), np.linalg.norm(np.ptp(skeleton.joints, axis=0))
-    margin = MARGIN * size
+    margin = BOX_MARGIN * size
     inside = (skeleton.joints >= low - margin) & (skeleton.joints <= high + margin)
     ratio = 1.0 if len(skeleton.joints) == 1 else min(extent, size) / max(extent, size)
     return float(inside.all(axis=1).mean() * ratio)

@@ -18,9 +18,9 @@ from ..rig.rig import LARGE, normalised
 from ..runtime.display import listed
 from ..runtime.memory import check_matrix
 
-ROUNDING = 0.01
-"""Sums of weights that are stored in 8 bits differ from one by up to this."""
-COPIES = 2
+STORED_SUM_TOLERANCE = 0.01
+"""Sums of weights that are stored in 8 bits differ from one by up to this: three miss by 0.006."""
+MATRIX_COPIES = 2
 """Copies of the matrix at a time, before and after its rows are scaled."""
 
 
@@ -62,7 +62,7 @@ def summed(
         top = np.zeros(shape[0])
         np.maximum.at(top, rows, values)
         values = values / np.where(top > 0, top, 1)[rows]
-    check_matrix(*shape, copies=COPIES)
+    check_matrix(*shape, copies=MATRIX_COPIES)
     weights = np.zeros(shape)
     np.add.at(weights, (rows, columns), values)
     return ReadWeights(normalised(weights), warnings, sums + weights.sum(axis=1))
@@ -75,7 +75,7 @@ def sum_warnings(sums: NDArray | None, faces: NDArray, parts: Iterable[Part]) ->
     is_used = np.zeros(len(sums), bool)
     is_used[faces] = True
     empty = is_used & (sums == 0)
-    off = is_used & (sums > 0) & (np.abs(sums - 1) > ROUNDING)
+    off = is_used & (sums > 0) & (np.abs(sums - 1) > STORED_SUM_TOLERANCE)
     warnings: list[str] = []
     nothing = "no weight, so that no joint moves them. Binding gives them some"
     scaled = "weights that do not sum to one. They are scaled so that they do"
@@ -90,7 +90,7 @@ def sum_warnings(sums: NDArray | None, faces: NDArray, parts: Iterable[Part]) ->
     return warnings
 
 
-KEY = "cutcell_deform"
+DEFORM_KEY = "cutcell_deform"
 """Under which a saved file stores for each joint whether it deforms: a joint that got no weight
 still does."""
 FOLLOWED = 0.25

@@ -12,7 +12,7 @@ from ..geometry.polygons import cut_polygons
 from .fbx_names import label, read_names, retain
 from .scene import Scene, upper_left
 
-FRAMES_A_SECOND = 30.0
+SAMPLED_RATE = 30.0
 DUAL = ufbx.SkinningMethod.DUAL_QUATERNION, ufbx.SkinningMethod.BLENDED_DQ_LINEAR
 
 
@@ -140,8 +140,8 @@ def add_clips(scene, file, place):
             file,
             stack.anim,
             trim_start_time=True,
-            resample_rate=FRAMES_A_SECOND,
-            maximum_sample_rate=FRAMES_A_SECOND,
+            resample_rate=SAMPLED_RATE,
+            maximum_sample_rate=SAMPLED_RATE,
             key_reduction_enabled=True,
             key_reduction_rotation=True,
         )
@@ -155,9 +155,9 @@ def add_clips(scene, file, place):
         scene.end_clip(label(stack))
 
 
-LONGEST = 1000
+MAX_IMAGE_NAME = 1000
 """Characters of an image's name that are handed on."""
-UNSEEN = 0.02
+UNSET_OPACITY = 0.02
 """Opacity treated as unset: many programs write 0 and mean 1."""
 
 
@@ -167,7 +167,7 @@ def describe(scene, material):
     texture, image = base_texture(material), -1
     if texture is not None:
         names = (texture.relative_filename, texture.filename, texture.absolute_filename)
-        image = scene.add_image(tuple(name[:LONGEST] for name in names), texture.content)
+        image = scene.add_image(tuple(name[:MAX_IMAGE_NAME] for name in names), texture.content)
     color, cut = base_color(material), is_cut(material)
     return label(material), color, opacity(material), image, cut, texture
 
@@ -206,7 +206,7 @@ def opacity(material):
         if not color.has_value or not factor.has_value:
             return 1.0
         value = 1 - factor.value_vec4.x * sum(tuple(color.value_vec4)[:3]) / 3
-    return float(value) if UNSEEN < value < 1 else 1.0
+    return float(value) if UNSET_OPACITY < value < 1 else 1.0
 
 
 def is_cut(material):

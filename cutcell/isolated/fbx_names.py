@@ -18,7 +18,7 @@ USUAL = {
 """Bytes of usual characters by encoding, and how many of these there are."""
 CLASS = re.compile(rb"\x00\x01.*|^(Model|Geometry|Material|AnimStack)::", re.DOTALL)
 KEEP: list[list] = []
-NAMES: dict[int, str] = {}
+NAMES_BY_ELEMENT: dict[int, str] = {}
 """Names that are not UTF-8, by the numbers of their elements."""
 
 
@@ -30,12 +30,12 @@ def retain(elements):
 
 def label(element):
     """Return the name of an element."""
-    return NAMES.get(element.element_id, element.name)
+    return NAMES_BY_ELEMENT.get(element.element_id, element.name)
 
 
 def read_names(elements):
     """Read the names that are not UTF-8, with `retain_dom`; return what to say of them."""
-    NAMES.clear()
+    NAMES_BY_ELEMENT.clear()
     raw = {}
     for one in elements:
         if "\ufffd" in one.name:  # for what ufbx writes such bytes
@@ -45,7 +45,7 @@ def read_names(elements):
     if not raw:
         return []
     encoding = guessed(b" ".join(raw.values()))
-    NAMES.update((k, name.decode(encoding, "replace")) for k, name in raw.items())
+    NAMES_BY_ELEMENT.update((k, name.decode(encoding, "replace")) for k, name in raw.items())
     return [
         f"its names are not UTF-8. They are read as {encoding}, guessed from their letters; if "
         "they are wrong, save the file again with a newer program"

@@ -1,6 +1,6 @@
 """The arrays of a scene, collected by the readers of FBX and USD.
 
-`cutcell.io.scenes.document` and `cutcell.io.materials.surfaces` explain them.
+`cutcell.io.formats.scene` and `cutcell.io.materials.surfaces` explain them.
 """
 
 from __future__ import annotations

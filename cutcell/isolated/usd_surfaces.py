@@ -14,7 +14,7 @@ from pxr import Usd, UsdGeom, UsdShade, UsdSkel
 from ..runtime.colors import srgb
 from .scene import upper_left
 
-LARGEST = 2**28
+MAX_IMAGE_BYTES = 2**28
 """Bytes of an image in a package."""
 SETS = ("st", "uv", "map")
 """Names of texture coordinates that are pairs of numbers by type begin so, in any case."""
@@ -101,7 +101,7 @@ def packed(file, name):
     """Return a file of a package; nothing if it is not there, or too large."""
     try:
         with zipfile.ZipFile(file) as package:
-            return package.read(name) if package.getinfo(name).file_size <= LARGEST else b""
+            return package.read(name) if package.getinfo(name).file_size <= MAX_IMAGE_BYTES else b""
     except (KeyError, OSError, ValueError, RuntimeError, zipfile.BadZipFile):
         return b""
 

@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from .kinematics import checked_skinning
 
-FLAT = 1e-6
+SINGULAR = 1e-6
 """Determinant of a matrix without a nearest rotation, relative to the cube of its norm."""
-TIE = 1e-4
+HALF_TURN = 1e-4
 """Components and products of unit quaternions below this are taken for zero: the sign of a half
 turn must not depend on rounding."""
 
@@ -84,7 +84,7 @@ def blended(
     strongest = quaternions[joints[:, 0]]
     sums = np.zeros((len(points), 20))
     for column, share in zip(joints.T, weights.T, strict=True):
-        is_opposite = np.einsum("nq,nq->n", quaternions[column], strongest) < -TIE
+        is_opposite = np.einsum("nq,nq->n", quaternions[column], strongest) < -HALF_TURN
         sums += np.where(is_opposite, -share, share)[:, None] * table[column]
     real, by_point = sums[:, :4], sums[:, 4:].reshape(-1, 4, 4)
     dual = np.einsum("nab,nb->na", by_point[:, :, :3], points) + by_point[:, :, 3]
@@ -114,10 +114,10 @@ def rotation_quaternions(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the quaternions (j, 4) of the rotations that are nearest to matrices (j, 4, 4)."""
     linear = matrices[:, :3, :3]
     norm = np.linalg.norm(linear, axis=(1, 2))
-    has_rotation = np.linalg.det(linear) > FLAT * norm**3
+    has_rotation = np.linalg.det(linear) > SINGULAR * norm**3
     left, _, right = np.linalg.svd(np.where(has_rotation[:, None, None], linear, np.eye(3)))
     result = np.asarray(Rotation.from_matrix(left @ right).as_quat(), np.float64).reshape(-1, 4)
     # A rotation has two quaternions: take the one whose w, else x, y or z, is positive.
     order = result[:, [3, 0, 1, 2]]
-    first = np.argmax(np.abs(order) > TIE, axis=1)[:, None]
+    first = np.argmax(np.abs(order) > HALF_TURN, axis=1)[:, None]
     return np.asarray(result * np.sign(np.take_along_axis(order, first, axis=1)), np.float64)

@@ -11,7 +11,7 @@ from ..rig import Clip, Skeleton
 from ..rig.checks import as_array
 from ..rig.transforms import composed
 
-AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+AXIS_VECTORS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def forward_kinematics(skeleton: Skeleton, rotations: ArrayLike) -> NDArray[np.float64]:
@@ -74,9 +74,9 @@ def rotate_joint(
 def axis_rotation(axis: str | ArrayLike, degrees: float) -> NDArray[np.float64]:
     """Return the rotation matrix, shape (3, 3), about an axis."""
     if isinstance(axis, str):
-        if axis not in AXES:
+        if axis not in AXIS_VECTORS:
             raise ParameterError(f'axis "{axis}" is none of x, y, z')
-        axis = AXES[axis]
+        axis = AXIS_VECTORS[axis]
     direction = _numbers(axis, (3,), "axis")
     length = np.linalg.norm(direction)
     if length == 0:

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.vectors import TIE
 from ..graph import MESH, CutCellGraph
 from ..rig import Skeleton
 from .kinematics import axis_rotation
 
-DEGREES = 30.0
+STRETCH_DEGREES = 30.0
 """Each joint turns by this about x, y and z, as for the deformation error."""
 FACTOR = 2.0
 """An edge that becomes more than this many times as long or short is stretched."""
@@ -24,8 +25,6 @@ MAX_EDGES = 6000
 """Edges to measure; of more, a sample by length."""
 BLOCK_NUMBERS = 1 << 20
 """Numbers of each array of a block of edges: 8 MB."""
-TIE = 1e-9
-"""Relative: an edge that becomes just as long as the bound is not stretched, however rounded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +109,7 @@ def measure_stretch(
     follows = followed(shares, skeleton)
     joints = graph.lattice.to_unit(skeleton.joints)
     turned = np.flatnonzero(np.ptp(follows, axis=1) > TIE)  # else all moves as one
-    turns = [axis_rotation(axis, DEGREES) for axis in "xyz"]
+    turns = [axis_rotation(axis, STRETCH_DEGREES) for axis in "xyz"]
     blocks = [
         block.subset(_is_stretched(block))
         for block in turned_edges(graph.nodes[nodes], local, follows, joints, turned, turns, FACTOR)

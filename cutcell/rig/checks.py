@@ -10,23 +10,23 @@ from numpy.typing import NDArray
 from ..checks import one_line
 from ..errors import CutcellError
 
-LARGEST = 1e60
+MAX_COORDINATE = 1e60
 """Largest coordinate to compute with: products of a few of them must not overflow."""
-NUMBERS = "biufO"
+NUMBER_KINDS = "biufO"
 """Kinds of arrays that may hold numbers: not complex ones, texts or dates."""
-EXACT = 2**53
+MAX_EXACT_INTEGER = 2**53
 """Whole numbers up to this are themselves as float64."""
 
 
 def check_positions(points: NDArray[np.float64], what: str, error: type[CutcellError]) -> None:
     """Refuse points whose coordinates are too large to compute with. Shapes: points (n, 3)."""
-    far = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
+    far = np.flatnonzero((np.abs(points) > MAX_COORDINATE).any(axis=1))
     if len(far):
         position = ", ".join(f"{x:.3g}" for x in points[far[0]])
         raise error(
             f"{what} {far[0]} lies at ({position}), too far out to compute with "
-            f"(the limit is {LARGEST:g}; {len(far)} of {len(points)} are so); move or delete it, "
-            "or scale the whole character down"
+            f"(the limit is {MAX_COORDINATE:g}; {len(far)} of {len(points)} are so); move or "
+            "delete it, or scale the whole character down"
         )
 
 
@@ -39,12 +39,12 @@ def as_array(
         empty = [0 if size is None else size for size in shape]
         if array.size == 0 and 0 in empty:  # whatever its own shape and type
             array = np.zeros(empty)
-        if array.dtype.kind not in NUMBERS:
+        if array.dtype.kind not in NUMBER_KINDS:
             raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
         if np.issubdtype(dtype, np.integer) and array.dtype.kind == "f":
             with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
                 array = array.astype(np.float64)  # half precision knows no such number
-            array = np.where(np.abs(array) <= EXACT, array, 0.5)
+            array = np.where(np.abs(array) <= MAX_EXACT_INTEGER, array, 0.5)
             if not np.array_equal(array, np.round(array)):
                 raise error(f"{name} must be whole numbers")
         if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():

@@ -20,7 +20,7 @@ from .skeleton import Skeleton
 
 FAR_OUTSIDE = 10.0
 """A joint this many bounding-box diagonals away from the mesh is in another unit."""
-ROUNDING = 1e-12
+EXACT_SUM_TOLERANCE = 1e-12
 """Rows of weights whose sums differ less from one are taken as they are."""
 LARGE = 1e300
 """The sum of larger weights may overflow."""
@@ -165,7 +165,7 @@ class Rig(Summarized):
                 )
             with np.errstate(over="ignore"):
                 sums = weights.sum(axis=1)
-            is_off = (np.abs(sums - 1) > ROUNDING) & (sums > 0)
+            is_off = (np.abs(sums - 1) > EXACT_SUM_TOLERANCE) & (sums > 0)
             if is_off.any():
                 weights = weights.copy()
                 weights[is_off] = normalised(weights[is_off])

@@ -33,3 +33,10 @@ def inverses(matrices: NDArray) -> NDArray[np.float64]:
         return np.linalg.inv(matrices).astype(np.float64)
     except np.linalg.LinAlgError:
         return np.linalg.pinv(matrices).astype(np.float64)
+
+
+def moved(points: NDArray, matrix: NDArray) -> NDArray[np.float64]:
+    """Return points (n, 3) moved by a matrix (4, 4), the same if it is the identity."""
+    if np.array_equal(matrix, np.eye(4)):
+        return points
+    return points @ matrix[:3, :3].T + matrix[:3, 3]

@@ -1,11 +1,11 @@
 """Cache of compiled functions, so that a machine compiles them once.
 
 numba's own cache raises where no folder can be written to, where the disk is full, and where a file
-is cut short, and two processes that compile a function can swap its files. Here each compiled
-function is one compressed file with a checksum, written whole. It is named by a hash of all that it
-depends on: every source of cutcell, and of the package that the function is in, Python, numba and
-the processor. A process waits for a function that another one is compiling. What cannot be read is
-compiled again; what cannot be written stays in memory.
+is cut short; it cannot be read where it cannot be written; and two processes that compile a
+function can swap its files. Here each compiled function is one compressed file with a checksum,
+written whole. It is named by a hash of all that it depends on: every source of cutcell, and of the
+package that the function is in, Python, numba and the processor. What cannot be read is compiled
+again; what cannot be written stays in memory.
 """
 
 from __future__ import annotations
@@ -18,19 +18,17 @@ import shutil
 import sys
 import time
 import zlib
-from collections.abc import Callable
-from contextlib import ExitStack, suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 from uuid import uuid4
 
 import numba
 import platformdirs
 from llvmlite import binding
 from numba import config
-from numba.core.caching import NullCache
-from numba.core.codegen import get_host_cpu_features
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
@@ -44,17 +42,18 @@ except ImportError:  # on Windows
 
 MAX_OLD_SETS = 3
 """Older sets of functions that stay in a folder, for other versions that use it, too."""
-ANNOUNCEMENT = "Compiling, once on this machine. This takes about a minute."
-COMPLETE = "complete"
-"""Name of the file that marks a set with all functions of a binding."""
-PATIENCE, POLL_EVERY = 60.0, 0.02
-"""Seconds to wait for a function that another process compiles, and between two looks at it."""
+ANNOUNCEMENT = "Compiling, once on this machine. This takes about half a minute."
+COMPLETE, LOCK = "complete", "lock"
+"""Names of the file that marks a set with all functions of a binding, and of the file that a
+process locks while it compiles them."""
+PATIENCE, LOOK_EVERY = 120.0, 0.02
+"""Seconds to wait for a process that compiles, and between two looks at it."""
 
 refusals: list[str] = []
 """Why this process could not keep what it compiled, one entry per file."""
 
 
-class CompileCache(NullCache):
+class CompileCache:
     """Cache of one function, for numba's dispatcher.
 
     Parameters
@@ -63,30 +62,27 @@ class CompileCache(NullCache):
         Not compiled yet.
     """
 
+    cache_path = None  # the dispatcher's `stats` read it
+
     def __init__(self, function: Callable) -> None:
         self._function = function
-        self._lock = ExitStack()  # held while this process compiles the function
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return what was compiled for some types of arguments, None if that is not available."""
         target_context.refresh()
         name = self._file_name(sig)
-        compiled = _read(name, target_context)
-        if compiled is None:
-            announce()
-            self._lock.close()  # where compiling failed before
-            _lock(name, self._lock)
-            compiled = _read(name, target_context)  # another process may have compiled it
-        if compiled is not None:
-            self._lock.close()
-        return compiled
+        for folder in folders() if name else ():
+            with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
+                payload = zlib.decompress((folder / name).read_bytes())
+                return CompileResult._rebuild(target_context, *pickle.loads(payload))
+        announce()
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function, where that is possible."""
         name = self._file_name(sig)
         if name and not data.library.has_dynamic_globals:
             write(name, zlib.compress(dumps(data._reduce()), 1))
-        self._lock.close()
 
     def _file_name(self, sig: Any) -> str:
         """Name a version of the function; empty if its sources cannot be read."""
@@ -103,28 +99,29 @@ class CompileCache(NullCache):
         return f"{function.__qualname__}-{digest}.kernel"
 
 
-def _read(name: str, target_context: Any) -> Any:
-    """Read a compiled function; None if there is none, or its file is damaged."""
-    for folder in folders() if name else ():
-        with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
-            payload = zlib.decompress((folder / name).read_bytes())
-            return CompileResult._rebuild(target_context, *pickle.loads(payload))
-    return None
+@contextmanager
+def only_process() -> Iterator[None]:
+    """Wait for another process that is in this block, so that this one loads what it compiles.
+
+    Where no file can be locked, both compile.
+    """
+    with ExitStack() as stack:
+        for folder in folders() if fcntl else ():
+            with suppress(OSError):
+                folder.mkdir(parents=True, exist_ok=True)
+                _lock(stack.enter_context((folder / LOCK).open("ab")))
+                break
+        yield
 
 
-def _lock(name: str, stack: ExitStack) -> None:
-    """Wait for another process that compiles a function; lock its file until the stack closes."""
-    for folder in folders() if name and fcntl else ():
-        with suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            file = stack.enter_context((folder / name).open("ab"))
-            end = time.monotonic() + PATIENCE
-            while time.monotonic() < end:
-                try:
-                    return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    time.sleep(POLL_EVERY)
-            return None
+def _lock(file: IO[bytes]) -> None:
+    """Lock a file, until it is closed, as soon as no other process does, or `PATIENCE` ends."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        try:
+            return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(LOOK_EVERY)
     return None
 
 
@@ -204,7 +201,7 @@ def _set_name() -> str:
     """
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
     name, features = vars(config)["CPU_NAME"], vars(config)["CPU_FEATURES"]
-    features = get_host_cpu_features() if features is None else features
+    features = binding.get_host_cpu_features().flatten() if features is None else features
     processor = sys.platform, name or binding.get_host_cpu_name(), features
     parts = repr((compiler, processor, source_digest(PACKAGE)))
     return f"kernels-{hashlib.sha256(parts.encode()).hexdigest()[:32]}"

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .frame import TRUNK, Joints, mirrored, sided
 from .interior import Interior, along, cut
 
-PARENTS = {
+BIPED_PARENTS = {
     **dict(zip(TRUNK, ("", *TRUNK), strict=False)),
     **sided(
         shoulder="chest", upper_arm="shoulder", forearm="upper_arm", hand="forearm",
@@ -16,7 +16,7 @@ PARENTS = {
     ),
 }  # fmt: skip
 
-SOLE = 0.06
+BIPED_SOLE = 0.06
 """Height below which points belong to the feet, in body heights."""
 LEGS = (0.36, 0.6)
 """Range in which hips are sought, in heights of the neck; a robe hides them."""
@@ -28,7 +28,7 @@ NECK = 0.05
 KNEE = 0.54
 """Share of the height of the hips."""
 ANKLE = 0.08
-THIN = 0.75
+THIN_CELLS = 0.75
 """Depth of thin parts, in lattice cells."""
 HAND = 0.1
 """Reach of fingers beyond thick parts, in body heights."""
@@ -37,7 +37,7 @@ ARM_OUT = 0.6
 
 
 def place(body: Interior) -> Joints:
-    """Return where the joints of `PARENTS` are in a body."""
+    """Return where the joints of `BIPED_PARENTS` are in a body."""
     points, tall, floor = body.points, body.height, body.floor
     x, y = points[:, 0], points[:, 1] - floor
     middle = np.abs(x) < 0.1 * np.abs(x).max()
@@ -76,7 +76,7 @@ def place(body: Interior) -> Joints:
 
 def _sole(body: Interior, sign: int) -> int:
     """Return the node in the middle of what one foot stands on."""
-    low = body.points[:, 1] - body.floor < SOLE * body.height
+    low = body.points[:, 1] - body.floor < BIPED_SOLE * body.height
     is_foot = low & (sign * body.points[:, 0] > 0)
     return body.central(is_foot if is_foot.any() else low)
 
@@ -85,7 +85,7 @@ def _hand(body: Interior, head: int, belly: int, sign: int) -> int:
     """Return the end of the longest limb to one side: a node far from both head and belly."""
     x, y = sign * body.points[:, 0], body.points[:, 1] - body.floor
     side = (y > 0.2 * body.height) & (y < 0.95 * body.height)
-    thick = body.depth > THIN * body.cell  # no corner of a cape
+    thick = body.depth > THIN_CELLS * body.cell  # no corner of a cape
     side = side & thick if (side & thick).any() else side
     candidates = np.flatnonzero(side & (x > ARM_OUT * x[side].max()))
     away = body.distances(head)[candidates] + body.distances(belly)[candidates]
@@ -105,7 +105,7 @@ def _leg(
     body: Interior, sole: int, hips: NDArray[np.float64], height: float, robe: bool, sign: int
 ) -> Joints:
     points, y = body.points, body.points[:, 1] - body.floor
-    low = (y < SOLE * body.height) & (sign * points[:, 0] > 0)
+    low = (y < BIPED_SOLE * body.height) & (sign * points[:, 0] > 0)
     ground = points[sole]
     toes = points[low] if low.any() else ground[None]
     heel, toe_tip = np.quantile(toes[:, 2], [0.02, 0.98])

@@ -19,7 +19,7 @@ from .interior import Interior, along
 
 Template = Literal["biped", "quadruped", "hand", "snake", "chain"]
 TEMPLATES: tuple[Template, ...] = get_args(Template)
-RESOLUTION = 64
+FIT_RESOLUTION = 64
 """With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
 ENDS = 0.12
@@ -85,8 +85,8 @@ def fit_skeleton(
     mesh = as_mesh(mesh)
     if graph is not None:
         require_same("graph", graph.fingerprint, data_fingerprint(mesh))
-    if graph is None or not RESOLUTION <= graph.lattice.resolution <= 2 * RESOLUTION:
-        graph = build_graph(mesh, RESOLUTION, progress=progress)
+    if graph is None or not FIT_RESOLUTION <= graph.lattice.resolution <= 2 * FIT_RESOLUTION:
+        graph = build_graph(mesh, FIT_RESOLUTION, progress=progress)
     nodes = graph.nodes[graph.connected]
     if len(graph.interior) < FEWEST_NODES:
         raise MeshError(

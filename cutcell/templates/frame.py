@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-ALIKE = 0.06
+SYMMETRIC_WITHIN = 0.06
 """Difference below which left and right joints become symmetric, in longest sides of the body."""
 Joints = dict[str, NDArray[np.float64]]
 """Position of each joint by its name, in the body's frame."""
 TRUNK = ("hips", "spine", "chest", "neck", "head")
-SAMPLES = 4000
+MIRROR_SAMPLES = 4000
 """Vertices that are compared with their mirror images."""
-CLEARLY = 0.8
+CLEARLY_SHORTER = 0.8
 """One axis is longer, or more of a mirror, if another has at most this part of it."""
 
 
@@ -28,14 +28,14 @@ def sided(**parents: str) -> dict[str, str]:
 
 def mirror_axis(nodes: NDArray[np.float64]) -> int:
     """Return the coordinate axis across which points (n, 3) are most like their mirror images."""
-    chosen = nodes[:: max(1, len(nodes) // SAMPLES)]
+    chosen = nodes[:: max(1, len(nodes) // MIRROR_SAMPLES)]
     tree = cKDTree(chosen)
     gaps = []
     for axis in range(3):
         image = chosen.copy()
         image[:, axis] = nodes[:, axis].min() + nodes[:, axis].max() - image[:, axis]
         gaps.append(float(tree.query(image)[0].mean()))
-    if gaps[0] < gaps[1] / CLEARLY and gaps[0] < gaps[2] / CLEARLY:
+    if gaps[0] < gaps[1] / CLEARLY_SHORTER and gaps[0] < gaps[2] / CLEARLY_SHORTER:
         return 0  # nearly all characters are mirrored across x
     return int(np.argmin(gaps))
 
@@ -49,9 +49,9 @@ def standing(nodes: NDArray[np.float64], *, tall: bool) -> NDArray[np.float64]:
     side = mirror_axis(nodes)
     up, other = (axis for axis in (1, 2, 0) if axis != side)  # y is up in most files, then z
     if tall:
-        is_other = extent[other] * CLEARLY > extent[up]
+        is_other = extent[other] * CLEARLY_SHORTER > extent[up]
     else:
-        is_other = _feet(nodes, other) > _feet(nodes, up) / CLEARLY
+        is_other = _feet(nodes, other) > _feet(nodes, up) / CLEARLY_SHORTER
     up = other if is_other else up
     front = 3 - side - up
     axes = np.zeros((3, 3))
@@ -108,7 +108,7 @@ def mirrored(joints: Joints, size: float) -> Joints:
     gaps = [float(np.linalg.norm(joints[a] - flip * joints[b])) for a, b in pairs]
     sides = {name for pair in pairs for name in pair}
     result = {name: at if name in sides else at * flat for name, at in joints.items()}
-    if max(gaps, default=np.inf) <= ALIKE * size:
+    if max(gaps, default=np.inf) <= SYMMETRIC_WITHIN * size:
         for a, b in pairs:
             result[a] = (joints[a] + flip * joints[b]) / 2
             result[b] = flip * result[a]

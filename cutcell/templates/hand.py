@@ -9,13 +9,13 @@ from ..errors import SkeletonError
 from .frame import Joints
 from .interior import Interior, along, cut
 
-NAMES = {
+FINGER_NAMES = {
     2: ("index", "pinky"),
     3: ("index", "middle", "pinky"),
     4: ("index", "middle", "ring", "pinky"),
 }
 """Names of the fingers other than the thumb, by their number."""
-MIN_LENGTH = 0.3
+MIN_FINGER = 0.3
 """Least length of a finger, in lengths of the longest one."""
 MAX_ENDS = 16
 CLIMB = 5
@@ -38,7 +38,7 @@ def place(body: Interior) -> Joints:
     longest = max(lengths.values(), default=0.0)
     if longest < MIN_OF_HAND * body.distances(wrist).max():
         tips = []
-    tips = [tip for tip in tips if lengths[tip] > MIN_LENGTH * longest]
+    tips = [tip for tip in tips if lengths[tip] > MIN_FINGER * longest]
     if len(tips) < 3:
         raise SkeletonError(
             "no three fingers were found in the mesh; choose another template, such as chain"
@@ -46,7 +46,7 @@ def place(body: Interior) -> Joints:
     tips = _in_order(body, wrist, sorted(tips, key=lambda tip: -lengths[tip])[:5])
     palm = body.deepest(body.distances(wrist) < 0.6 * min(body.distances(wrist)[tips]))
     joints: Joints = {"hand": along(body.middle_path(wrist, palm), np.array([0.15]))[0]}
-    for name, tip in zip(("thumb", *NAMES[len(tips) - 1]), tips, strict=True):
+    for name, tip in zip(("thumb", *FINGER_NAMES[len(tips) - 1]), tips, strict=True):
         path = cut(body, tip, palm, lengths[tip])
         for number, at in enumerate(along(path, KNUCKLES), start=1):
             joints[f"{name}.{number}"] = at
@@ -58,7 +58,7 @@ def names() -> list[tuple[str, ...]]:
     numbers = range(1, len(KNUCKLES) + 1)
     return [
         ("hand", *(f"{finger}.{n}" for finger in ("thumb", *fingers) for n in numbers))
-        for fingers in NAMES.values()
+        for fingers in FINGER_NAMES.values()
     ]
 
 

@@ -18,7 +18,7 @@ AT_SKIN = 0.1
 """Distance from the skin within which points are treated as outside, in lattice cells."""
 LARGE_COMPONENTS = 32
 """Components that others may be joined to; further ones are small."""
-SHORTEST = 1e-9
+MIN_EDGE = 1e-9
 """Least length of edges in the unit cube: one of length 0 would be none."""
 
 
@@ -163,5 +163,5 @@ def _bridged(lengths: csr_array, points: NDArray[np.float64]) -> csr_array:
             tree = cKDTree(points[joined])
     bridges = coo_array((added, (rows, columns)), shape=lengths.shape)
     every = csr_array(lengths + bridges + bridges.T)
-    every.data = np.maximum(every.data, SHORTEST)
+    every.data = np.maximum(every.data, MIN_EDGE)
     return every

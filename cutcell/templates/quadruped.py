@@ -9,7 +9,7 @@ from .frame import TRUNK, Joints, mirrored, sided
 from .interior import Interior, along, cut
 
 TAIL = ("tail.1", "tail.2", "tail.3")
-PARENTS = {
+QUADRUPED_PARENTS = {
     **dict(zip(TRUNK, ("", *TRUNK), strict=False)),
     **dict(zip(TAIL, ("hips", *TAIL), strict=False)),
     **sided(
@@ -18,17 +18,17 @@ PARENTS = {
     ),
 }  # fmt: skip
 
-SOLE = 0.08
+QUADRUPED_SOLE = 0.08
 """Height below which points belong to the feet, in body heights."""
 LEG = np.array([0.08, 0.5, 1.05])
 """Shares of the path from the ground to the trunk: foot, knee, top of the leg."""
 
 
 def place(body: Interior) -> Joints:
-    """Return where the joints of `PARENTS` are in a body."""
+    """Return where the joints of `QUADRUPED_PARENTS` are in a body."""
     points = body.points
     y, z = points[:, 1] - body.floor, points[:, 2]
-    low = y < SOLE * body.height
+    low = y < QUADRUPED_SOLE * body.height
     half = (z[low].min() + z[low].max()) / 2
     feet = {}
     for end, before in (("front_", True), ("", False)):

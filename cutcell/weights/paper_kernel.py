@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..geometry.vectors import TIE
 from ..runtime.threads import in_threads, parts, threads
 
-A_PART = 100_000
+KERNEL_PART = 100_000
 """Weights of one part of the work: they fit into the cache."""
 
 
@@ -34,5 +34,5 @@ def paper_kernel(
         weight = np.divide(least, steepness, out=np.ones_like(x), where=steepness > 0) ** 2
         weights[part] = (weight / weight.sum(axis=0)).T
 
-    in_threads(weigh, parts(len(weights), threads() + weights.size // A_PART))
+    in_threads(weigh, parts(len(weights), threads() + weights.size // KERNEL_PART))
     return weights

@@ -15,8 +15,8 @@ from ..animation.falloff.pipeline import RigFalloff
 from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
-from ..geometry.sparse_rows import chosen_entries, rows_of_entries, scaled, single, with_rows
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
+from ..rig.rows import chosen_entries, rows_of_entries, scaled, single, to_dense, with_rows
 from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
 from .prune import prune
@@ -90,7 +90,7 @@ class WeightStep(NamedTuple):
     welded: bool = False
 
 
-LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
+LIMIT_LABELS = {"storable": "storable in file", "limit": "limited", "normalise": "normalised"}
 """Labels of the steps after the falloff."""
 
 
@@ -154,7 +154,7 @@ def equation_1(
     Shapes: allowed (n, j); returns (n, j) with `allowed`, else (k, j) of welded vertices.
     """
     assert method.alpha is not None
-    distance = distances.at_welded if allowed is None else distances.joint
+    distance = to_dense(distances.rows).T if allowed is None else distances.joint
     if adjustments is not None:
         distance = distance / adjustments.gain[:, None]
     return csr_array(paper_kernel(distance, distances.graph.lattice.diagonal, method.alpha))

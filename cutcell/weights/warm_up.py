@@ -1,8 +1,4 @@
-"""Compile all functions of a binding at once, so that no character waits for one of them.
-
-Two processes compile: one from the graph on, the other its winding numbers and then what follows
-the graph. The cache lets neither compile what the other has begun.
-"""
+"""Compile all functions of a binding at once, so that no character waits for one of them."""
 
 import gc
 import logging
@@ -11,24 +7,19 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ..geodesics import bone_distances
-from ..graph import CutCellGraph, build_graph
-from ..graph.winding.boundary import find_boundary
-from ..graph.winding.treecode.caps import smallest_caps
-from ..graph.winding.treecode.cells import classify_cells
-from ..graph.winding.treecode.clusters import build_tree
+from ..graph import build_graph
 from ..method import ANIMATION
 from ..runtime import compile_cache
 from ..runtime.subprocesses import python_environment
-from ..runtime.threads import threads
 from .skinning_weights import skinning_weights
-from .warm_up_inputs import block_graph, chain, tube
+from .warm_up_inputs import chain, tube
 
 
 @cache
@@ -39,26 +30,18 @@ def warm_up() -> None:
     loads them in about a second. Where they cannot be kept, each process compiles them in memory,
     and a warning is logged.
     """
-    is_complete = compile_cache.is_complete()
-    helper = None if is_complete else start_process("compile_from_other_end")
-    try:
+    with nullcontext() if compile_cache.is_complete() else compile_cache.only_process():
+        is_complete = compile_cache.is_complete()
         with _without_garbage_collection():
-            build_graph(tube(), 8, connectivity="any")
-            build_graph(tube(), 8, connectivity=26)
-            _compile_after(block_graph(26))
-            _compile_after(block_graph())
-    finally:
-        if helper is not None:
-            helper.kill()
-            helper.communicate()
-    if not is_complete:
-        compile_cache.mark_complete()
-        if compile_cache.refusals:
-            logging.getLogger("cutcell").warning(
-                "the compiled functions cannot be kept (%s), so that each start takes about a "
-                "minute; set NUMBA_CACHE_DIR to a folder that can be written to",
-                compile_cache.refusals[-1],
-            )
+            _bind_small()
+        if not is_complete:
+            compile_cache.mark_complete()
+    if compile_cache.refusals and not is_complete:
+        logging.getLogger("cutcell").warning(
+            "the compiled functions cannot be kept (%s), so that each start takes about half a "
+            "minute; set NUMBA_CACHE_DIR to a folder that can be written to",
+            compile_cache.refusals[-1],
+        )
 
 
 def is_compiled() -> bool:
@@ -66,26 +49,16 @@ def is_compiled() -> bool:
     return warm_up.cache_info().currsize > 0 or compile_cache.is_complete()
 
 
-def compile_from_other_end() -> None:
-    """Compile the same in another order: winding numbers, and then what follows the graph."""
-    with _without_garbage_collection():
-        graph = block_graph()
-        caps = smallest_caps(graph.nodes[: graph.first_point], find_boundary(graph.faces))
-        classify_cells(build_tree(caps), 8, ANIMATION.winding_threshold)
-        _compile_after(graph)
-        _compile_after(block_graph(26))
-
-
-def start_process(function: str) -> subprocess.Popen | None:
-    """Call a function of this module in another process, which ends with the result's `stdin`.
+def start_process() -> subprocess.Popen | None:
+    """Compile in another process, which ends with the result's `stdin`.
 
     None where no process can start, or hand over what it compiles.
     """
     # A program that Python is built into could start itself once more.
     is_python = Path(sys.executable or "").stem.lower().startswith("python")
-    if not is_python or threads() < 2 or compile_cache.write("begun", b"") is None:
+    if not is_python or compile_cache.write("begun", b"") is None:
         return None
-    code = f"import {__name__} as module; module._end_with_parent(); module.{function}()"
+    code = f"import {__name__} as module; module._end_with_parent(); module.warm_up()"
     nothing = subprocess.DEVNULL
     with suppress(OSError):
         return subprocess.Popen(
@@ -105,16 +78,18 @@ def _end_with_parent() -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
-def _compile_after(graph: CutCellGraph) -> None:
-    """Compile what a binding needs once it has its graph."""
-    methods = ANIMATION, ANIMATION.with_options(falloff="paper")
-    for method in methods:  # which measure from different numbers of joints
-        within = ANIMATION.reach_needed
-        distances = bone_distances(graph, chain(), method=method, leaf="fit", within=within)
-    for method in methods:
-        skinning_weights(distances, method=method)
-    every = np.ones(distances.joint.shape[::-1], bool)
-    skinning_weights(distances, method=method, allowed=every)
+def _bind_small() -> None:
+    """Take every path through a binding."""
+    for connectivity in ("any", 26):
+        graph = build_graph(tube(), 8, connectivity=connectivity)
+        methods = ANIMATION, ANIMATION.with_options(falloff="paper")
+        for method in methods:  # which measure from different numbers of joints
+            within = ANIMATION.reach_needed
+            distances = bone_distances(graph, chain(), method=method, leaf="fit", within=within)
+        for method in methods:
+            skinning_weights(distances, method=method)
+        every = np.ones((len(distances.fallback), distances.rows.shape[1]), bool)
+        skinning_weights(distances, method=method, allowed=every)
 
 
 @contextmanager

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.triangles import face_edges
-from ..graph import INTERIOR, MESH, CutCellGraph, Lattice
-from ..graph.interior import InteriorPoints
 from ..rig import Skeleton, TriangleMesh
 
 AROUND = 16
@@ -19,8 +16,6 @@ MOEBIUS_BAND = np.array(
     [[0.3, 0, 0.1], [0.3, 0, 0.2], [0.4, 0, 0.15], [0.4, 0.1, 0.1], [0.3, 0.1, 0.15]]
 )
 """Five faces that cannot be oriented consistently."""
-SIDE = 8
-"""Lattice points along each side of the block."""
 
 
 def tube() -> TriangleMesh:
@@ -49,46 +44,3 @@ def chain() -> Skeleton:
     joints[:, 2] = np.linspace(0.1, 0.9, 8)
     joints[-1] = 3
     return Skeleton(joints, np.array([*range(-1, 6), -1]))
-
-
-def block_graph(connectivity: int | str = "any") -> CutCellGraph:
-    """Make a graph of the tube without `build_graph`, so that nothing has to be compiled for it.
-
-    All lattice points of the cube are taken to lie inside, and no ray to hit the surface: each
-    vertex has an edge to the lattice point that is nearest.
-    """
-    mesh = tube()
-    lattice = Lattice.around(mesh, SIDE)
-    vertices = lattice.to_unit(mesh.vertices)
-    first = len(vertices)
-    number = np.arange(SIDE**3, dtype=np.int32).reshape(SIDE, SIDE, SIDE)
-    points = (np.stack(np.unravel_index(number.ravel(), number.shape), axis=1) + 0.5) / SIDE
-    column = np.arange(SIDE * SIDE + 1)
-    ends = np.zeros(SIDE * SIDE, np.int32)
-    stretches = InteriorPoints(SIDE, column, ends, ends + SIDE - 1, column * SIDE)
-
-    of_mesh = np.unique(face_edges(mesh.faces), axis=0)
-    around = np.pad(number, 1, constant_values=-1)
-    up = [np.roll(around, -1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
-    inside = [first + np.stack([number.ravel(), to], axis=1)[to >= 0] for to in up]
-    cell = np.clip((vertices * SIDE).astype(int), 0, SIDE - 1)
-    ties = np.stack([np.arange(first), first + number[tuple(cell.T)]], axis=1)
-
-    nodes = np.concatenate([vertices, points])
-    edges = np.concatenate([of_mesh, *inside, ties]).astype(np.int32)
-    return CutCellGraph(
-        nodes=nodes,
-        node_kind=np.repeat(np.array([MESH, INTERIOR], np.uint8), (first, len(points))),
-        edges=edges,
-        lengths=np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1),
-        edge_kind=(np.arange(len(edges)) >= len(of_mesh)).astype(np.uint8),
-        triangle=np.full(len(nodes), -1, np.int32),
-        vertex_node=np.arange(first, dtype=np.int32),
-        faces=mesh.faces.astype(np.int32),
-        lattice=lattice,
-        is_closed=False,
-        connectivity=connectivity,
-        interior=stretches,
-        inverted=np.zeros(len(mesh.faces), bool),
-        omitted=np.zeros(len(mesh.faces), np.uint8),
-    )

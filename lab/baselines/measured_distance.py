@@ -20,10 +20,10 @@ from cutcell.geodesics import BoneDistances, BoneDistanceSolver, Bones, trace_pa
 from cutcell.geodesics.fallback import why_not_reached
 from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
-from cutcell.geometry.sparse_rows import with_columns
 from cutcell.graph import CutCellGraph, build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
+from cutcell.rig.rows import with_columns
 from cutcell.runtime.progress import Progress
 
 from .body import Body

@@ -206,9 +206,9 @@ def near_table(rigs: dict[str, Rig], nears: Sequence[float], resolution: int) ->
         f"({cleaning.NEAR:g} by default). Of damaged weights the mean L1 after; rigs and wild."
     )
     table = Table("What is near", columns, note)
-    default = cleaning.NEAR
+    default = cleaning.NEAR_RATIO
     for near in nears:
-        cleaning.NEAR = near
+        cleaning.NEAR_RATIO = near
         results = [measure(rig, name, resolution, DAMAGES) for name, rig in rigs.items()]
         worst = max(results, key=lambda one: one.changed)
         after = [
@@ -224,7 +224,7 @@ def near_table(rigs: dict[str, Rig], nears: Sequence[float], resolution: int) ->
             *(f"{value:.4f}" for value in after),
         )
         print(f"near {near:g}", flush=True)
-    cleaning.NEAR = default
+    cleaning.NEAR_RATIO = default
     return table
 
 

@@ -11,12 +11,12 @@ from .read.archive import ArchivedAsset as ArchivedAsset
 from .read.archive import Split as Split
 from .read.archive import read_archive as read_archive
 from .read.archive import split as split
+from .read.entry import Entry as Entry
+from .read.entry import read_entry as read_entry
 from .read.sources import Source as Source
 from .read.sources import find_sources as find_sources
-from .read.store import Entry as Entry
 from .read.store import Parameters as Parameters
 from .read.store import Store as Store
-from .read.store import read_entry as read_entry
 from .torch_data import RigDataset as RigDataset
 from .torch_data import RigSamples as RigSamples
 from .torch_data import collate_samples as collate_samples

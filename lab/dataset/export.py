@@ -23,7 +23,8 @@ from cutcell.rig import TriangleMesh
 from cutcell.runtime.writing import replacing, write_all
 
 from .audit.points import mesh_normals, sample_surface
-from .read.store import Entry, Store
+from .read.entry import Entry
+from .read.store import Store
 from .torch_data import at_points
 
 FORMATS = ("rignet", "unirig", "puppeteer")

@@ -13,7 +13,8 @@ from cutcell.checks import check_choice, check_integer
 from cutcell.errors import FileError, MissingLibraryError
 
 from .audit.points import SurfacePoints, sample_surface
-from .read.store import Store, read_entry
+from .read.entry import read_entry
+from .read.store import Store
 
 Prior = Literal["weights", "distances", "bone_distances"]
 PRIORS: tuple[Prior, ...] = ("weights", "distances", "bone_distances")

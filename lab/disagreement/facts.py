@@ -13,9 +13,9 @@ from cutcell.diagnosis.subject import Subject
 from cutcell.geodesics import BoneDistances
 from cutcell.geodesics.fallback import REACHED
 from cutcell.geometry.segments import closest_on_segment
-from cutcell.geometry.sparse_rows import to_dense
 from cutcell.graph import INTERIOR
 from cutcell.rig import Rig
+from cutcell.rig.rows import to_dense
 
 SAMPLES = 48
 """Vertices of a region that are measured."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.diagnosis.parts import RIGID
+from cutcell.diagnosis.parts import RIGID_WEIGHT
 from cutcell.geodesics import BoneDistances
 from cutcell.geodesics.fallback import REACHED, UNREACHED
 from cutcell.rig import Rig
@@ -225,7 +225,7 @@ class Reasons:
 
 def _is_rigid(rows: NDArray[np.float64]) -> bool:
     """Return whether all rows are nearly equal."""
-    return bool(np.abs(rows - rows.mean(axis=0)).sum(axis=1).max() < 2 * (1 - RIGID))
+    return bool(np.abs(rows - rows.mean(axis=0)).sum(axis=1).max() < 2 * (1 - RIGID_WEIGHT))
 
 
 def _mm(length: float) -> str:

@@ -17,8 +17,8 @@ from cutcell.io.files import naming
 from cutcell.io.weights import normalised
 from cutcell.rig import Rig
 
+from ..dataset.read.entry import read_entry
 from ..dataset.read.sources import Source, read_source
-from ..dataset.read.store import read_entry
 from ..metrics import errors_by_definition
 from .align import align_weights
 from .pairs import Pair, find_pairs

@@ -274,4 +274,4 @@ def measure_setting(
         The reference does not fit the rig.
     """
     measured = Measured(rig, binding.weights, reference, binding, progress=progress)
-    return SweepPoint(value, **measured.values(MEASURES))
+    return SweepPoint(value, "", **measured.values(MEASURES))

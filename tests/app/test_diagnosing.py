@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 import cutcell
 from cutcell import Edits, Filled, JointEdit, Layer, Locked, Mask
 from cutcell.diagnosis import Diagnosis, Finding
-from cutcell.diagnosis.repair import WEIGHTS
+from cutcell.diagnosis.repair import WEIGHT_REPAIRS
 from cutcell.errors import LocatedWarning
 from cutcell.rig import TriangleMesh
 from cutcell_app.document import loading
@@ -235,7 +235,9 @@ def test_a_repair_in_vain_is_said_and_not_offered_again(spoiled, loop, monkeypat
     state, before = spoiled.state, spoiled.state.rig
     look_at(spoiled, "unweighted-vertices")
     assert {"Repair", "Repair all 2 findings"} <= labels(spoiled).keys()
-    monkeypatch.setitem(WEIGHTS, "unweighted-vertices", lambda rig, weights, vertices: weights)
+    monkeypatch.setitem(
+        WEIGHT_REPAIRS, "unweighted-vertices", lambda rig, weights, vertices: weights
+    )
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.repair is not None)
     assert state.rig is before

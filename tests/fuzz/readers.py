@@ -24,7 +24,8 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.io import keeps_document, scenes
+from cutcell.io import keeps_document
+from cutcell.io.formats import scene as scenes
 from cutcell.io.gltf.read import compressed as gltf_draco
 from cutcell.isolated.__main__ import limit_memory
 from cutcell.isolated.run import WorkFailedError

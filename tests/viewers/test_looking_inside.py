@@ -8,7 +8,6 @@ import pytest
 
 import cutcell
 from cutcell.geodesics import trace_path
-from cutcell.graph.sections import slice_rays
 from cutcell_viewers.character import in_scene, to_scene
 from cutcell_viewers.graph_scene import cut_at, depth_field
 from cutcell_viewers.interpolation import interpolate
@@ -16,6 +15,7 @@ from cutcell_viewers.joint_colors import colors_of, joint_colors
 from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
 from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen
 from cutcell_viewers.plane_section import plane_section
+from cutcell_viewers.ray_slice import slice_rays
 from cutcell_viewers.section_scene import (
     body_section,
     field_face,

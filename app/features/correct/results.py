@@ -4,7 +4,6 @@ from typing import Any
 
 import cutcell
 from cutcell.binding import Binding
-from cutcell.binding.preview import Preview
 from cutcell.editing import Edits
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -12,6 +11,7 @@ from cutcell.runtime.progress import Progress
 from ...derive.derived import Derived
 from ...derive.jobs import DESCRIBING
 from ...document.state import State
+from ...editing.preview import Preview
 from ..weights.results import bind_as_chosen, layered, wide_options
 
 

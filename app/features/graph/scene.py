@@ -5,7 +5,6 @@ from typing import Any
 
 from cutcell import build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from cutcell.graph.sections import RaySlice, slice_rays
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
@@ -19,6 +18,7 @@ from cutcell_viewers.graph_scene import (
 )
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import MARK
+from cutcell_viewers.ray_slice import RaySlice, slice_rays
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ...derive.memo import Memo

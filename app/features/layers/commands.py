@@ -10,7 +10,7 @@ from scipy.sparse import csr_array, vstack
 
 from cutcell.editing import Edits, FromFile, Layer, Mask, Painted
 from cutcell.editing.layers.contents import Content
-from cutcell.editing.layers.layer import ALL
+from cutcell.editing.layers.layer import EVERYWHERE
 from cutcell.errors import CutcellError
 
 from ...document.session import Session
@@ -101,7 +101,7 @@ def put_content(
     """Put a layer over some vertices, shape (k,), or over all for None, and choose it."""
 
     def added() -> tuple[Edits, int | None]:
-        mask = ALL if vertices is None else Mask(vertices=np.unique(vertices))
+        mask = EVERYWHERE if vertices is None else Mask(vertices=np.unique(vertices))
         layer = Layer(content(), mask, name or "", opacity)
         return stack.put_layer(session.state.edits, layer)
 

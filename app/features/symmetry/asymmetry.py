@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cutcell.editing.symmetry import (
-    MIN_SHARE,
+    MIN_MIRRORED,
     Mirror,
     find_mirror,
     joint_mirror,
@@ -15,9 +15,10 @@ from cutcell.editing.symmetry import (
     reflected,
 )
 from cutcell.errors import MeshError
-from cutcell.geometry.triangles import closest_on_triangle
 from cutcell.rig import Rig, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
+
+from .closest import closest_on_triangle
 
 NEAR = 0.02
 """Bounding-box diagonals: skin that is farther from the mirrored surface has no mirror image."""
@@ -60,7 +61,7 @@ def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
         mirror = joint_mirror(rig)
     vertices, shares = _images(rig.mesh, mirror, mesh_diagonal(rig), progress)
     part = float(shares[np.unique(rig.mesh.faces)].any(axis=1).mean())
-    if part < MIN_SHARE:
+    if part < MIN_MIRRORED:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: only {part:.0%} of its vertices have a "
             "mirror image on the surface"

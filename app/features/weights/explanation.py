@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from cutcell.binding import Explanation, JointShare
-from cutcell.binding.absence import STEPS
+from cutcell.binding.absence import STEP_LABELS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
 from cutcell_viewers.joint_colors import colors_of
@@ -61,7 +61,7 @@ def _facts(share: JointShare) -> dict[str, Any]:
         "path": runs,
         "factors": [[name, value] for name, value in share.factors.items() if value != 1],
         "effective": _finite(share.effective),
-        "steps": [[STEPS.get(name, name), value] for name, value in share.steps.items()],
+        "steps": [[STEP_LABELS.get(name, name), value] for name, value in share.steps.items()],
         "file": share.file_weight,
         "rank": share.rank,
         "absence": share.absence,

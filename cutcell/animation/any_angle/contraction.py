@@ -155,8 +155,9 @@ def _find_representatives(
     in_block = np.flatnonzero((block != NO_BLOCK) & (block != np.arange(len(block))))
     representative[mesh + in_block] = mesh + block[in_block]
     first_surface = mesh + len(block)
-    is_surface = edges >= first_surface
-    crossing, other = edges[is_surface], edges[:, ::-1][is_surface]
+    crossing, other = np.concatenate(
+        [edges[edges[:, side] >= first_surface][:, [side, 1 - side]] for side in range(2)]
+    ).T
     single = np.bincount(crossing)[crossing] == 1
     single &= (other >= mesh) & (other < first_surface)
     representative[crossing] = np.where(single, other, KEPT)

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from ...geometry.vectors import TIE
 from ...runtime.compiled import compiled
 
-NO_JOINT, NO_PARENT = -1, -(2**31)
+UNUSED_JOINT, NO_PARENT = -1, -(2**31)
 """The joint and the parent of an unused label."""
-FIRST = -np.inf
+BEFORE_ALL = -np.inf
 END, LOOSE, SETTLED = -1, -2, -3
 """Values of `after` other than a label: last of its bucket, in no bucket, settled."""
 LABEL = np.dtype(
@@ -44,8 +44,16 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
     """
     make = np.recarray if vars(config)["DISABLE_JIT"] else np.empty  # without attributes
     labels = make(nodes * each, LABEL)
-    labels[:] = np.inf, NO_JOINT, LOOSE, 0
+    _empty(labels)
     return labels, np.full(nodes * each, NO_PARENT, np.int32)
+
+
+@compiled
+def _empty(labels):
+    """Make labels unused, field by field: numpy would go through them once for each field."""
+    for label in range(len(labels)):
+        labels[label].distance, labels[label].joint = np.inf, UNUSED_JOINT
+        labels[label].after, labels[label].before = LOOSE, 0
 
 
 @compiled(inline="always")
@@ -81,7 +89,7 @@ def bucket_of(head, scale, distance):
 
 
 @compiled(inline="always")
-def join(head, labels, bucket, label, distance=FIRST):
+def join(head, labels, bucket, label, distance=BEFORE_ALL):
     """Insert a label that is in no bucket, before the first one that is at least as far."""
     before, after = ~bucket, head[bucket]
     while after != END and labels[after].distance < distance:

@@ -30,10 +30,10 @@ from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads
 from .contraction import Contraction
 from .labels import (
+    BEFORE_ALL,
     END,
-    FIRST,
-    NO_JOINT,
     SETTLED,
+    UNUSED_JOINT,
     bucket_of,
     find_room,
     has_parent,
@@ -47,7 +47,7 @@ from .labels import (
 from .line_of_sight import body_of, has_line_of_sight, is_preferred, parent_position, straight
 from .wavefront import Ranking, Wavefront, begin, enqueue, partition_sources, rank_bones
 
-NEAR = 2
+CORNER_CELLS = 2
 """Lattice cells: how near a corner of a triangle must be to have line of sight to a parent. A
 distant one may lie behind a fold of the surface."""
 ON_BONE = 0.5
@@ -56,7 +56,7 @@ BUCKETS = 4
 """Buckets for a unit of distance, times R squared: each is at most a hundredth of a cell wide."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
-BATCH = 25_000
+LABELS_TOGETHER = 25_000
 """Labels that are settled in a few hundredths of a second: then progress is reported."""
 
 
@@ -143,7 +143,7 @@ def _propagate(
     wavefront = front.each, labels, front.parents, front.least
     last, origin, bucket, settled = len(head) - 1, 0.0, 0, 0
     while True:
-        bucket, count = _settle(space, wavefront, queue, within, origin, bucket, BATCH)
+        bucket, count = _settle(space, wavefront, queue, within, origin, bucket, LABELS_TOGETHER)
         settled += count
         report(min(settled / len(labels), 0.99))
         if bucket == last:
@@ -166,7 +166,7 @@ def _read(nodes, body, bones, labels, parents, each, targets, number, column, jo
         for k in range(each):
             label = v * each + k
             reached, parent = labels[label].distance, parents[label]
-            if labels[label].joint != NO_JOINT and node[v] != target:
+            if labels[label].joint != UNUSED_JOINT and node[v] != target:
                 reached = straight(position, parent_position(places, bones, each, parent, position))
                 reached += labels[parent].distance if parent >= 0 else 0.0
             joint[t, column + k] = number[max(labels[label].joint, 0)]
@@ -212,7 +212,7 @@ def _settle(space, wavefront, queue, within, origin, bucket, most):
                     continue  # a path by way of u is no shorter
                 step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
                 if min(u, v) < first_point:
-                    sees = u >= first_point and step * resolution < NEAR - TIE
+                    sees = u >= first_point and step * resolution < CORNER_CELLS - TIE
                 elif v >= first_surface:
                     sees = u < first_surface
                 else:
@@ -231,7 +231,7 @@ def _settle(space, wavefront, queue, within, origin, bucket, most):
                 labels[slot].distance = reached
                 least[v] = min(least[v], reached)
                 later = max(bucket_of(head, scale, reached - origin), bucket)
-                join(head, labels, later, slot, reached if later == bucket else FIRST)
+                join(head, labels, later, slot, reached if later == bucket else BEFORE_ALL)
             label = labels[label].before
         bucket += head[bucket] == END
     return bucket, settled

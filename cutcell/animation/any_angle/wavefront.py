@@ -13,7 +13,7 @@ from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
 from .contraction import Contraction
-from .labels import NO_JOINT, bucket_of, find_room, join, limit_of, no_labels
+from .labels import UNUSED_JOINT, bucket_of, find_room, join, limit_of, no_labels
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,5 +139,5 @@ def enqueue(labels, each, head, scale, node, number):
         if node[v] != n:
             continue
         for label in range(v * each, v * each + each):
-            if labels[label].joint != NO_JOINT:
+            if labels[label].joint != UNUSED_JOINT:
                 join(head, labels, bucket_of(head, scale, labels[label].distance), label)

@@ -20,9 +20,9 @@ from .probe import BodyProbe
 from .rest_axis import rest_directions
 from .twists import with_twists_in_chain
 
-BODY = 0.7
+MIN_BODY_JOINTS = 0.7
 """A mesh with a smaller part of its deforming joints in it is a garment without its body."""
-SAME_PLACE = 1e-6
+COINCIDENT_ENDS = 1e-6
 """Largest distance of coincident joints, relative to the longest side."""
 ONWARD = 0.5
 """Cosine: a child within 60 degrees of the rest axis continues the bone; others branch off."""
@@ -32,15 +32,15 @@ SIDE_BRANCH = 2.0
 """Where a child lies on the rest axis, no bone to another is more than this many times as long."""
 PASSES = 0.1
 """A bone to a child that passes another child nearer than this part of its length is none."""
-IN_BODY = 0.5
+MIN_BONE_IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
-LONGEST = 3.0
+MAX_LENGTH_RATIO = 3.0
 """Length of a bone whose end is a guess over that of its parent's bone, at most: a head that looks
 back along its body is not as long as the body, and an end marker may be anywhere."""
 LENGTH = 1.1
 """The length of an inferred bone over that of the bone that it continues, at most: the halves of a
 limb are about equally long."""
-CLEARLY = 1.2
+UNAMBIGUOUS_RATIO = 1.2
 """A bone is inferred if the second-best candidate is farther by this factor; else it is
 ambiguous."""
 HOP = 1.5
@@ -102,9 +102,9 @@ def find_chains(
     """
     skeleton, joints = with_twists_in_chain(skeleton, joints)
     near = probe.near(joints)
-    if near[skeleton.deform].mean() < BODY:
+    if near[skeleton.deform].mean() < MIN_BODY_JOINTS:
         near[:] = True  # the joints are where the body would be
-    same = cdist(joints, joints) < SAME_PLACE
+    same = cdist(joints, joints) < COINCIDENT_ENDS
     if not _has_bones(skeleton):
         parents = _inferred_tree(skeleton, joints, near, probe)
         skeleton = replace(skeleton, parents=parents)
@@ -141,11 +141,10 @@ def _directions(
             parent[j] = skeleton.parents[parent[j]]
     away = joints - joints[parent]
     length = np.linalg.norm(away, axis=1)
-    bone = (parent >= 0) & near[parent] & (length >= SAME_PLACE)
-    bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= IN_BODY
+    bone = (parent >= 0) & near[parent] & (length >= COINCIDENT_ENDS)
+    bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= MIN_BONE_IN_BODY
     length = np.where(bone, length, 0.0)
-    direction = np.divide(away, length[:, None], out=np.zeros_like(away), where=bone[:, None])
-    return direction, length
+    return np.where(bone[:, None], _unit(away), 0.0), length
 
 
 def _ends(
@@ -169,7 +168,7 @@ def _ends(
     leads &= (skeleton.deform & near)[parent]
     is_marker = ~skeleton.deform & ~np.isin(child, parent) & (length[parent] > 0)
     leads &= ~is_marker | (
-        np.linalg.norm(joints - joints[parent], axis=1) <= LONGEST * length[parent]
+        np.linalg.norm(joints - joints[parent], axis=1) <= MAX_LENGTH_RATIO * length[parent]
     )
     for k in np.flatnonzero(leads).tolist():
         ends[parent[k]].append(k)
@@ -236,7 +235,7 @@ def _inferred_bones(
     away = joints[goals] - joints[leaves, None]
     far = np.linalg.norm(away, axis=2)
     fits = together[np.ix_(leaves, goals)] & ~skeleton.subtree[np.ix_(goals, leaves)].T
-    fits &= (far >= SAME_PLACE) & (far <= LENGTH * length[leaves, None])
+    fits &= (far >= COINCIDENT_ENDS) & (far <= LENGTH * length[leaves, None])
     fits &= np.einsum("tgc,tc->tg", away, direction[leaves]) >= 0
     leaf, goal = fits.nonzero()
     fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[goals[goal]]) == 1
@@ -254,7 +253,7 @@ def _clear_choice(far: NDArray[np.float64]) -> NDArray[np.intp]:
     if far.size == 0:
         return np.full(len(far), -1)
     least = far.min(axis=1)
-    is_clear = (least < np.inf) & ((far <= CLEARLY * least[:, None]).sum(axis=1) == 1)
+    is_clear = (least < np.inf) & ((far <= UNAMBIGUOUS_RATIO * least[:, None]).sum(axis=1) == 1)
     return np.where(is_clear, far.argmin(axis=1), -1)
 
 
@@ -273,21 +272,29 @@ def _inferred_tree(
     # Sorted by position, so that ties do not depend on how a file numbers joints.
     members = members[probe.lattice.order(joints[members])]
     places = joints[members]
-    away = places[None] - places[:, None]
-    length = np.linalg.norm(away, axis=2)
-    air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
+    length = cdist(places, places)
+    # One by one: all at once, the sample points of many segments would fill the memory.
+    inner = [probe.inner_part(place, places, strictly=True) for place in places]
+    air = 1 - np.array(inner)
     # Whole numbers, whose sums are exact. Coincident joints cost 1, as zero would mean no edge.
     cost = np.maximum(np.rint(length**HOP * (1 + THROUGH_AIR * air) * 1e12), 1)
     before = dijkstra(cost, return_predecessors=True)[1]
-    unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
     best, least = -1, np.inf
     for root in np.flatnonzero(skeleton.deform[members]):
         # Edges from the root itself do not bend.
         to = np.flatnonzero((before[root] >= 0) & (before[root] != root))
         via = before[root][to]
-        bend = (1 - (unit[before[root][via], via] * unit[via, to]).sum(axis=1)).sum()
-        if bend < least * (1 - SAME_PLACE):
+        arriving, leading = places[via] - places[before[root][via]], places[to] - places[via]
+        cosine = (_unit(arriving) * _unit(leading)).sum(axis=1)
+        bend = (1 - cosine).sum()
+        if bend < least * (1 - COINCIDENT_ENDS):
             best, least = int(root), float(bend)
     reached = before[best] >= 0
     parents[members[reached]] = members[before[best][reached]]
     return parents
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors (n, 3) of length one, zero for those of no length."""
+    length = np.linalg.norm(vectors, axis=1)[:, None]
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)

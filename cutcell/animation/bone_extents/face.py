@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,9 @@ PARTS = ("eye", "brow", "jaw", "mouth", "tongue", "teeth", "cheek")
 LETTERS = "目眼瞳眉顎口唇歯舌耳鼻"
 """Japanese: eye, pupil, brow, jaw, mouth, lip, teeth, tongue, ear, nose."""
 
+CACHED_NAMES = 4096
+"""Names whose answers stay in memory: a skeleton's are the same while its joints are moved."""
+
 
 def face_parts(skeleton: Skeleton) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Find the joints of faces, and of these the eyes, lids and brows, both of shape (j,).
@@ -31,6 +35,7 @@ def face_parts(skeleton: Skeleton) -> tuple[NDArray[np.bool_], NDArray[np.bool_]
     return in_face, in_face & np.array([is_eye_part(name) for name in skeleton.names])
 
 
+@lru_cache(CACHED_NAMES)
 def is_face_part(name: str) -> bool:
     """Return whether a name is that of a joint in a face."""
     parts = words(name)
@@ -41,6 +46,7 @@ def is_face_part(name: str) -> bool:
     )
 
 
+@lru_cache(CACHED_NAMES)
 def is_eye_part(name: str) -> bool:
     """Return whether a name is that of an eye, or of a lid or brow, which have no length."""
     parts = words(name)

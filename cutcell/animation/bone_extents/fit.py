@@ -17,13 +17,13 @@ from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...bones.bones import Bones
-from ...bones.nearest import NodeTree
-from ...geometry.sparse_rows import rows_of_entries
+from ...bones.nearest import NodeGrid
 from ...geometry.triangles import areas
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
 from ...rig import Skeleton
-from .chains import LONGEST, SAME_PLACE, Chains, find_chains
+from ...rig.rows import rows_of_entries
+from .chains import COINCIDENT_ENDS, MAX_LENGTH_RATIO, Chains, find_chains
 from .probe import BodyProbe
 from .skins import characters, share_a_skin
 
@@ -35,7 +35,7 @@ REGION_WITHIN = 1.25
 share of it would be a hundredth."""
 REGION_POWER = 20
 """Skin is shared among joints by this power of the nearest distance over their own."""
-MIN_CELLS = 2.0
+MIN_BONE_CELLS = 2.0
 """Lattice cells of the character alone: such a bone is at least this long, if the body is still
 near there. Shorter ones have hardly any direction."""
 
@@ -43,14 +43,14 @@ near there. Shorter ones have hardly any direction."""
 def fit_bones(
     graph: CutCellGraph,
     skeleton: Skeleton,
-    tree: NodeTree,
+    grid: NodeGrid,
     allowed: NDArray[np.bool_] | None = None,
 ) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight, of each character by itself.
 
     Shapes: allowed (n, j), see `Rig.allowed`; returns aimed (b,).
     """
-    probe = BodyProbe(graph, tree)
+    probe = BodyProbe(graph, grid)
     together = share_a_skin(allowed, len(skeleton.joints))
     parts = []
     for joints, own in characters(skeleton, together):
@@ -127,8 +127,8 @@ def _leaf_lengths(
     if chains.rest is None:
         return length
     before = chains.length[joint]
-    length = np.minimum(length, np.where(before > 0, LONGEST * before, np.inf))
-    least = MIN_CELLS * size / probe.resolution
+    length = np.minimum(length, np.where(before > 0, MAX_LENGTH_RATIO * before, np.inf))
+    least = MIN_BONE_CELLS * size / probe.resolution
     is_long = probe.near(place + onward * least) | (length > least)
     return np.where(is_long, np.maximum(length, least), length)
 
@@ -141,10 +141,10 @@ def _others(
     The face does not end the bone of a head.
     """
     end = np.where(leaf[:, None], bones.start, bones.end)
-    to_face = cdist(bones.end, chains.joints[chains.in_face]) < SAME_PLACE
+    to_face = cdist(bones.end, chains.joints[chains.in_face]) < COINCIDENT_ENDS
     of_face = chains.in_face[bones.joint] | to_face.any(axis=1)
     for joint in bones.joint[leaf]:
-        ends_at_it = np.abs(bones.end - chains.joints[joint]).max(axis=1) < SAME_PLACE
+        ends_at_it = np.abs(bones.end - chains.joints[joint]).max(axis=1) < COINCIDENT_ENDS
         other = (bones.joint != joint) & ~ends_at_it
         if not chains.in_face[joint]:
             other &= ~of_face

@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 from ...rig import Skeleton
 
-ALONG = np.cos(np.radians(10))
+ALONG_BONE = np.cos(np.radians(10))
 """An axis points along a bone if it is within 10 degrees of it."""
-MOST = 0.6
+MIN_AGREEMENT = 0.6
 """Share of the bones to an only child that must agree on the axis."""
 MIN_BONES = 3
 """Fewer bones are no evidence."""
-SHORTEST = 1e-3
+MIN_DIRECTED_LENGTH = 1e-3
 """Length, relative to the longest side, below which a bone has no direction."""
-ALIKE = 1e-3
+SAME_ORIENTATION = 1e-3
 """Largest difference of the axes of joints that are oriented alike."""
 
 
@@ -28,21 +28,24 @@ def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[
 
     Shapes: joints (j, 3); returns (j, 3).
     """
-    if skeleton.orientations is None or np.ptp(skeleton.orientations, axis=0).max() < ALIKE:
+    if (
+        skeleton.orientations is None
+        or np.ptp(skeleton.orientations, axis=0).max() < SAME_ORIENTATION
+    ):
         return None
     local = []
     for j, children in enumerate(skeleton.children):
         away = joints[children] - joints[j]
         length = np.linalg.norm(away, axis=1)
-        if np.count_nonzero(length > SHORTEST) == 1:
+        if np.count_nonzero(length > MIN_DIRECTED_LENGTH) == 1:
             only = length.argmax()
             local.append(skeleton.orientations[j].T @ (away[only] / length[only]))
     if len(local) < MIN_BONES:
         return None
     # Columns: how many bones run along x, y, z, -x, -y, -z.
     signed = np.hstack([np.array(local), -np.array(local)])
-    agree = (signed > ALONG).mean(axis=0)
+    agree = (signed > ALONG_BONE).mean(axis=0)
     best = int(agree.argmax())
-    if agree[best] < MOST:
+    if agree[best] < MIN_AGREEMENT:
         return None
     return skeleton.orientations[:, :, best % 3] * (1 if best < 3 else -1)

@@ -13,11 +13,11 @@ from ...runtime.threads import in_threads
 
 POINTS = 9
 """Samples along each bone."""
-CELLS = 64
+FACE_CELLS = 64
 """Along each side of the grid that sorts the samples, so that a face visits those under it only."""
-SMALL = 0.25
+MAX_RIGID_SIZE = 0.25
 """Maximum size of rigid accessories and components of one joint, as part of the longest side."""
-INSIDE = 0.5
+INSIDE_SHARE = 0.5
 """A point is inside a component if this part of six rays from it leave the component."""
 
 
@@ -56,7 +56,7 @@ def bone_containment(
     which, sample, sign = (np.concatenate(parts) for parts in zip(*hits, strict=True))
     key, number = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
     # Each hit belongs to the ray up or to the ray down, one of six.
-    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE - 1e-9
+    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE_SHARE - 1e-9
     containment = np.zeros((count, len(bones.joint)))
     inside_of, bone = key[inside] // len(samples), key[inside] % len(samples) // POINTS
     np.add.at(containment, (inside_of, bone), 1 / POINTS)
@@ -71,9 +71,9 @@ def _intersect(
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    cell = np.clip((samples[:, :2] * CELLS).astype(np.int64), 0, CELLS - 1)
-    column = cell[:, 0] * CELLS + cell[:, 1]
-    start, order = sort_by_group(column, CELLS * CELLS)
+    cell = np.clip((samples[:, :2] * FACE_CELLS).astype(np.int64), 0, FACE_CELLS - 1)
+    column = cell[:, 0] * FACE_CELLS + cell[:, 1]
+    start, order = sort_by_group(column, FACE_CELLS * FACE_CELLS)
     samples = samples[order]
     room = 8 * len(samples)
     while True:
@@ -99,7 +99,7 @@ def _list_hits(points, faces, samples, start, face, sample, sign):
         low_v = min(points[a, 1], points[b, 1], points[c, 1])
         high_v = max(points[a, 1], points[b, 1], points[c, 1])
         for i in range(_cell(low_u), _cell(high_u) + 1):
-            first, last = i * CELLS + _cell(low_v), i * CELLS + _cell(high_v)
+            first, last = i * FACE_CELLS + _cell(low_v), i * FACE_CELLS + _cell(high_v)
             for s in range(start[first], start[last + 1]):
                 u, v = samples[s, 0], samples[s, 1]
                 if not (low_u <= u < high_u and low_v <= v <= high_v):
@@ -117,4 +117,4 @@ def _list_hits(points, faces, samples, start, face, sample, sign):
 
 @compiled(inline="always")
 def _cell(u):
-    return min(max(int(u * CELLS), 0), CELLS - 1)
+    return min(max(int(u * FACE_CELLS), 0), FACE_CELLS - 1)

@@ -7,21 +7,21 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import Bones
-from ...geometry.sparse_rows import column_of_most, scaled, single
 from ...geometry.triangles import face_edges
 from ...rig import Skeleton
-from .components import SMALL, bone_containment, longest_sides
+from ...rig.rows import scaled, single, strongest
+from .components import MAX_RIGID_SIZE, bone_containment, longest_sides
 from .surface_operators import SurfaceOperators
 
 PART_OF_BODY = 0.1
 """Maximum area of a component of one joint, such as an eyeball, as part of the largest component's.
 The head of a machine of many parts is larger."""
-BODY = 1 / 3
+MIN_BODY_AREA = 1 / 3
 """Part of the surface: if the largest component is smaller, the mesh is a machine of many parts."""
 OF_ANOTHER = 1e3
 """Factor of a bone's distance on components that another joint owns, and on all that its joint does
 not own if it owns any."""
-RIGID = 0.9, 0.92
+RIGID_AREA = 0.9, 0.92
 """A component is rigid if one joint is the strongest on the second part of its area; less and less
 rigid down to the first."""
 
@@ -68,8 +68,8 @@ def _owned(
     """
     areas = np.bincount(surface.component, surface.areas, len(starts))
     chosen = (starts.sum(axis=1) == 1) & (areas <= PART_OF_BODY * areas.max())
-    chosen &= longest_sides(surface.points, surface.component) <= SMALL
-    if skeleton is None or not chosen.any() or areas.max() < BODY * areas.sum():
+    chosen &= longest_sides(surface.points, surface.component) <= MAX_RIGID_SIZE
+    if skeleton is None or not chosen.any() or areas.max() < MIN_BODY_AREA * areas.sum():
         return np.zeros_like(starts)
     edges, uses = np.unique(face_edges(surface.faces), axis=0, return_counts=True)
     chosen[surface.component[edges[uses == 1, 0]]] = False  # open ones
@@ -110,13 +110,13 @@ def make_rigid(
     Shapes: weights (k, j), independent (components,); returns (k, j).
     """
     component, joints = surface.component, weights.shape[1]
-    entries = surface.areas, (component, column_of_most(weights))
+    entries = surface.areas, (component, strongest(weights))
     votes = csr_array(entries, (len(independent), joints))
     share = votes.max(axis=1).toarray() / np.maximum(votes.sum(axis=1), 1e-300)
-    rigidity = np.where(independent, 0.0, ramp(share, *RIGID))
+    rigidity = np.where(independent, 0.0, ramp(share, *RIGID_AREA))
     if not rigidity.any():
         return weights
-    rigid = scaled(single(column_of_most(votes), joints), rigidity)[component]
+    rigid = scaled(single(strongest(votes), joints), rigidity)[component]
     return scaled(weights, 1 - rigidity[component]) + rigid
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...geometry.sparse_rows import rows_of_entries, scaled, with_rows
+from ...rig.rows import rows_of_entries, scaled, with_rows
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads
@@ -17,11 +17,11 @@ from .surface_operators import SurfaceOperators
 
 SHARPNESS = 2.5
 """c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
-MIN_CELLS = 0.25
+MIN_DEPTH_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
 MIN_SCREENING = 1e-12
 """Minimum part of the matrix's diagonal: less would be rounded away and leave it singular."""
-NEGLIGIBLE = 1e-7
+NEGLIGIBLE_WEIGHT = 1e-7
 """Weights below it are not computed. They decay like exp(-sqrt(c) s / depth): a joint's weights end
 ten depths from its share."""
 MIN_SHARE = 1e-9
@@ -36,7 +36,7 @@ class Diffusion:
 
     The right side p is the surface as it was divided among the joints by distance. Each joint
     then bends the surface over a stretch about as long as the limb is thick there. Each is solved
-    for where its weights are not `NEGLIGIBLE`.
+    for where its weights are not `NEGLIGIBLE_WEIGHT`.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Diffusion:
         cls, surface: SurfaceOperators, depth: NDArray[np.float64], resolution: int
     ) -> Diffusion:
         """Factorise the equation's matrix: depth (k,)."""
-        depth = np.maximum(depth, MIN_CELLS / resolution)
+        depth = np.maximum(depth, MIN_DEPTH_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
         screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
         start, column, value = surface.stiffness
@@ -100,7 +100,7 @@ class Diffusion:
         def solve(first: int) -> tuple[NDArray, ...]:
             part = slice(*np.searchsorted(rank, (first, first + LANES)))
             vertex, lane, value = self.factors.solve(
-                row[part], rank[part] - first, right[part], NEGLIGIBLE
+                row[part], rank[part] - first, right[part], NEGLIGIBLE_WEIGHT
             )
             return vertex, lane, value, order[first : first + LANES]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...runtime.compiled import compiled, copy_to
 
-SMALLEST = 8
+MIN_PART = 8
 """Parts of up to this many vertices are not divided."""
 PENDING = 64
 """Parts that wait to be divided, at most: each is larger than all those that wait after it."""
@@ -78,7 +78,7 @@ def _dissect(start, column):
         begin, end, separator = low[waiting], high[waiting], above[waiting]
         part = vertex[begin:end]
         first, last = 0, len(part)
-        if len(part) > SMALLEST:
+        if len(part) > MIN_PART:
             for _ in range(2):  # the second search begins far out, where the first one ends
                 labels += 1
                 _search(start, column, part, label, labels, queue, level)

@@ -10,8 +10,8 @@ from scipy.sparse import csr_array
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
-from ...geometry.sparse_rows import rows_of_entries
 from ...geometry.vectors import TIE, segment_fraction
+from ...rig.rows import rows_of_entries
 from ...runtime.compiled import no_refcount
 from .adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment
@@ -22,7 +22,7 @@ POWER = 30
 FACING_LEAST = 0.3
 """Surface covers the bones that it looks away from. The distance of a bone that it looks right at
 is divided by this, that of one that it looks away from by 1."""
-MIN_CELLS = 0.01
+EQUAL_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 RADIUS_FACTOR = 1.5
 """Surface that is this many times as far from a bone as the median of that bone's surface is not
@@ -32,9 +32,9 @@ MIN_RADIUS = 0.5
 CONNECTED = 0.02
 """Part of the longest side: a bone that ends this near to the start of another joint's bone leads
 on to it."""
-MANY = 200_000
+MAX_MEASURED = 200_000
 """Vertices whose distances are sorted to measure radii; of more, these are a sample."""
-MIN_SHARE = 1e-3
+OWN_SHARE = 1e-3
 """Smallest share of a joint at a vertex of that joint's surface."""
 
 
@@ -91,7 +91,7 @@ class Division:
                 np.searchsorted(bones.joint, np.arange(joints + 1)),
                 bones.start,
                 bones.end,
-                MIN_CELLS / resolution,
+                EQUAL_CELLS / resolution,
                 radius,
                 chosen,
                 share,
@@ -99,11 +99,11 @@ class Division:
 
         divide(np.full(joints, np.inf), np.arange(vertices))
         weights = csr_array((share, rows.indices, rows.indptr), rows.shape)
-        few = slice(None, None, -(-vertices // MANY))
+        few = slice(None, None, -(-vertices // MAX_MEASURED))
         radius = _radii(weights[few], rows[few].data, surface.areas[few], bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
-        is_beyond = (rows.data > radius[rows.indices]) & (share > MIN_SHARE)
+        is_beyond = (rows.data > radius[rows.indices]) & (share > OWN_SHARE)
         beyond = np.bincount(rows_of_entries(rows)[is_beyond], minlength=vertices) > 0
         divide(radius, np.flatnonzero(beyond))
         return cls(surface, containment, penalty, radius, beyond, weights)
@@ -170,7 +170,7 @@ def _radii(
     Shapes: weights (k, j), distance (e,) of each entry, areas (k,).
     """
     vertex, joints = rows_of_entries(weights), weights.shape[1]
-    entry = np.flatnonzero(weights.data > MIN_SHARE)
+    entry = np.flatnonzero(weights.data > OWN_SHARE)
     vertex, joint = vertex[entry], weights.indices[entry]
     length, area = distance[entry], weights.data[entry] * (areas[vertex] + 1e-12)
     # By joint, then by length: one sort of sums takes a third of the time of two sorts.

@@ -7,18 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from .division import POWER, facing
-from .pipeline import TAIL, RigFalloff
+from .pipeline import WEIGHT_FLOOR, RigFalloff
 
-LABELS = {
+FALLOFF_LABELS = {
     "falloff": "shares by distance",
     "spread": "spread over skin",
     "rigid": "rigid components",
     "tail": "tail subtracted",
 }
 """Labels of the steps."""
-LOST = {
+LOST_AT = {
     "rigid": "The connected component moves as a whole with other joints.",
-    "tail": f"Its share was below {TAIL:.0%} of the largest, which is subtracted from all shares.",
+    "tail": f"Its share was below {WEIGHT_FLOOR:.0%} of the largest, which is subtracted from all.",
 }
 """Why a joint has no weight after a step that removed it."""
 

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...geometry.sparse_rows import scaled, with_rows
 from ...graph import CutCellGraph
-from .components import SMALL, longest_sides
+from ...rig.rows import scaled, with_rows
+from .components import MAX_RIGID_SIZE, longest_sides
 from .containment import ramp
 from .diffusion import Diffusion
 from .rigid_accessories import nearest_on_body
@@ -17,7 +17,7 @@ from .surface_operators import SurfaceOperators
 OF_BODY = 0.4, 0.6
 """A component is a garment if joints with bones in the body have the second part of its weight;
 less and less so down to the first. A wing that is one sheet has its own bones beside the body."""
-IN_BODY = 0.5
+IN_COMPONENT = 0.5
 """Part of such a bone that is inside a component."""
 
 
@@ -35,8 +35,10 @@ def drape(
     """
     component, areas = surface.component, surface.areas
     has_bones = np.asarray(containment.max(axis=1) > 0)
-    is_garment = ~has_bones & ~independent & (longest_sides(surface.points, component) > SMALL)
-    of_body = areas * (weights @ (containment.max(axis=0) >= IN_BODY))
+    is_garment = (
+        ~has_bones & ~independent & (longest_sides(surface.points, component) > MAX_RIGID_SIZE)
+    )
+    of_body = areas * (weights @ (containment.max(axis=0) >= IN_COMPONENT))
     part = np.bincount(component, of_body) / np.maximum(np.bincount(component, areas), 1e-300)
     follows = np.where(is_garment, ramp(part, *OF_BODY), 0)[component]
     garment = np.flatnonzero(follows)

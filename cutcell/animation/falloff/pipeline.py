@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import BoneDistances
-from ...geometry.sparse_rows import least
+from ...rig.rows import least
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
@@ -22,7 +22,7 @@ from .garments import drape
 from .rigid_accessories import attach_accessories
 from .surface_operators import SurfaceOperators, surface_of
 
-TAIL = 0.05
+WEIGHT_FLOOR = 0.05
 """Part of a vertex's largest weight that is subtracted from all its weights, so that they end."""
 
 
@@ -70,7 +70,7 @@ class RigFalloff:
         yield "spread", weights
         weights = self.with_rigid_parts(weights)
         yield "rigid", weights
-        yield "tail", without_tail(weights)
+        yield "tail", subtract_floor(weights)
 
     def with_rigid_parts(self, weights: csr_array) -> csr_array:
         """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
@@ -82,20 +82,20 @@ class RigFalloff:
         return attach_accessories(graph, surface, containment, weights, independent)
 
 
-def without_tail(weights: csr_array) -> csr_array:
+def subtract_floor(weights: csr_array) -> csr_array:
     """Subtract a part of each vertex's largest weight from all of them, in place."""
-    _subtract_tail(weights.indptr, weights.data)
+    _subtract_floor(weights.indptr, weights.data)
     return weights
 
 
 @compiled
-def _subtract_tail(start, weight):
+def _subtract_floor(start, weight):
     for v in range(len(start) - 1):
         largest, total = 0.0, 0.0
         for e in range(start[v], start[v + 1]):
             largest = max(largest, weight[e])
         for e in range(start[v], start[v + 1]):
-            weight[e] = max(weight[e] - TAIL * largest, 0.0)
+            weight[e] = max(weight[e] - WEIGHT_FLOOR * largest, 0.0)
             total += weight[e]
         for e in range(start[v], start[v + 1]):
             weight[e] /= total

@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...bones.nearest import NodeTree
-from ...geometry.sparse_rows import column_of_most, scaled, single, with_rows
+from ...bones.nearest import NodeGrid
 from ...geometry.vectors import TIE
 from ...graph import CutCellGraph
-from .components import SMALL, longest_sides
+from ...rig.rows import scaled, single, strongest, with_rows
+from .components import MAX_RIGID_SIZE, longest_sides
 from .containment import ramp
 from .surface_operators import SurfaceOperators
 
-CONTACT = 1.0
+CONTACT_CELLS = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
 than at its nearest vertex."""
 DOMINANT = 0.6, 0.65
@@ -38,7 +38,7 @@ def attach_accessories(
     points, component, areas = surface.points, surface.component, surface.areas
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
-    is_small = longest_sides(points, component) <= SMALL
+    is_small = longest_sides(points, component) <= MAX_RIGID_SIZE
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
@@ -66,7 +66,9 @@ def attach(
     label = component[attached]
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
-    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution + TIE)
+    touching = np.flatnonzero(
+        distance <= least[label] + CONTACT_CELLS / graph.lattice.resolution + TIE
+    )
     rows = _contact_weights(
         (mean @ weights)[touching],
         areas[attached[touching]] + 1e-12,
@@ -86,9 +88,9 @@ def _contact_weights(
     gather = scaled(gather, 1 / np.maximum(gather.sum(axis=1), 1e-300))
     mean = gather @ touched
     mean.sort_indices()
-    share = mean.maximum(gather @ single(column_of_most(touched), joints))
+    share = mean.maximum(gather @ single(strongest(touched), joints))
     alone = ramp(share.max(axis=1).toarray(), *DOMINANT)
-    return scaled(mean, 1 - alone) + scaled(single(column_of_most(share), joints), alone)
+    return scaled(mean, 1 - alone) + scaled(single(strongest(share), joints), alone)
 
 
 def nearest_on_body(
@@ -103,7 +105,7 @@ def nearest_on_body(
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeTree(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
     distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
     corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
     part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)

@@ -13,7 +13,7 @@ from ...weights.prune import prune
 from .layer import Layer
 from .sources import RigSources, Which, vertices_of
 
-ROWS = 1000
+ROWS_TOGETHER = 1000
 """Rows that are changed at a time: some arrays of them fit a processor's cache."""
 
 
@@ -116,6 +116,6 @@ def _put(
 
 def _blocks(which: Which, weights: NDArray[np.float64]) -> Iterator[NDArray[np.intp]]:
     """Yield some vertices at a time, of all for None."""
-    for start in range(0, len(weights) if which is None else len(which), ROWS):
-        end = min(start + ROWS, len(weights))
-        yield np.arange(start, end) if which is None else which[start : start + ROWS]
+    for start in range(0, len(weights) if which is None else len(which), ROWS_TOGETHER):
+        end = min(start + ROWS_TOGETHER, len(weights))
+        yield np.arange(start, end) if which is None else which[start : start + ROWS_TOGETHER]

@@ -13,7 +13,7 @@ from .packing import joint_name, joint_names, mapping, with_keys
 
 MIN_GAIN, MAX_GAIN = 0.05, 20.0
 MAX_STEPS = 1000
-ROUNDING = 1e-9
+SUM_TOLERANCE = 1e-9
 """Tolerance for sums of weights."""
 
 Side = Literal["both", "left", "right"]
@@ -128,7 +128,7 @@ class Filled(Content):
         total = sum(entries.values())
         if not total > 0:
             raise ParameterError("weights must name at least one joint with a weight above 0")
-        if abs(total - 1) > ROUNDING:
+        if abs(total - 1) > SUM_TOLERANCE:
             entries = {joint: weight / total for joint, weight in entries.items()}
         assign(self, weights=entries)
 

@@ -26,7 +26,7 @@ from .contents import (
 from .packing import MAX_VERTEX, ByValue, ascending, naming, numbers, packed, with_keys
 from .painted import Painted
 
-KINDS: dict[str, Any] = {
+CONTENT_KINDS: dict[str, Any] = {
     one.kind: one
     for one in (Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored, Locked)
 }
@@ -88,7 +88,7 @@ class Mask(ByValue):
         return {name: packed(array) for name, array in pairs if array is not None}
 
 
-ALL = Mask()
+EVERYWHERE = Mask()
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Layer:
     """
 
     content: Content
-    mask: Mask = ALL
+    mask: Mask = EVERYWHERE
     name: str = ""
     opacity: float = 1.0
     on: bool = True
@@ -152,9 +152,9 @@ class Layer:
     @classmethod
     def from_data(cls, where: str, value: Any) -> Layer:
         """Read what `to_data` returns."""
-        if not isinstance(value, Mapping) or value.get("kind") not in KINDS:
-            raise ParameterError(f'{where} must have a "kind": one of {", ".join(KINDS)}')
-        kind = KINDS[value["kind"]]
+        if not isinstance(value, Mapping) or value.get("kind") not in CONTENT_KINDS:
+            raise ParameterError(f'{where} must have a "kind": one of {", ".join(CONTENT_KINDS)}')
+        kind = CONTENT_KINDS[value["kind"]]
         own = [one.name for one in fields(kind)]
         data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on"])
         try:

@@ -21,7 +21,7 @@ from ...rig.checks import frozen
 MAX_VERTEX = 2**31 - 2
 SHORT = 32
 """Longest array that is written as a list of numbers; longer ones are base64, little-endian."""
-ROWS = {"data": "f", "indices": "i", "indptr": "i"}
+SPARSE_ARRAYS = {"data": "f", "indices": "i", "indptr": "i"}
 """Arrays of a sparse matrix, and their kinds."""
 TYPES: dict[str, str] = {"i": "<i4", "f": "<f8"}
 
@@ -44,7 +44,7 @@ def _values(value: Any) -> list[Any]:
 
 def _same(a: Any, b: Any) -> bool:
     if isinstance(a, csr_array) and isinstance(b, csr_array):
-        return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ROWS)
+        return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in SPARSE_ARRAYS)
     return np.array_equal(a, b) if isinstance(a, np.ndarray) else a is b or bool(a == b)
 
 
@@ -94,13 +94,15 @@ def numbers(where: str, value: Any, kind: str) -> NDArray[np.float64]:
 
 def packed_rows(rows: csr_array) -> dict[str, Any]:
     """Return a sparse matrix as JSON."""
-    return {name: packed(getattr(rows, name)) for name in ROWS}
+    return {name: packed(getattr(rows, name)) for name in SPARSE_ARRAYS}
 
 
 def unpacked_rows(value: Any, columns: int) -> csr_array:
     """Read what `packed_rows` returns."""
-    data = with_keys("rows", value, ROWS)
-    parts = [numbers(f"{key} of rows", data.get(key, ()), kind) for key, kind in ROWS.items()]
+    data = with_keys("rows", value, SPARSE_ARRAYS)
+    parts = [
+        numbers(f"{key} of rows", data.get(key, ()), kind) for key, kind in SPARSE_ARRAYS.items()
+    ]
     values, indices, starts = parts[0], parts[1].astype(np.int32), parts[2].astype(np.int32)
     try:
         rows = csr_array((values, indices, starts), shape=(max(len(starts) - 1, 0), columns))

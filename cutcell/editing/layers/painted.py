@@ -13,7 +13,7 @@ from scipy.sparse import csr_array, issparse, vstack
 from ...checks import assign
 from ...errors import ParameterError
 from ...rig.checks import frozen
-from .contents import ROUNDING, Content, Rename
+from .contents import SUM_TOLERANCE, Content, Rename
 from .packing import ByValue, ascending, joint_names, packed, packed_rows, unpacked_rows
 
 
@@ -114,8 +114,8 @@ def _checked_rows(rows: Any, vertices: NDArray[np.int32], joints: int) -> csr_ar
         raise ParameterError(
             f"vertex {vertices[row]} needs a weight above 0 for at least one joint"
         )
-    if (np.abs(total - 1) > ROUNDING).any():
-        whole = np.where(np.abs(total - 1) > ROUNDING, total, 1.0)
+    if (np.abs(total - 1) > SUM_TOLERANCE).any():
+        whole = np.where(np.abs(total - 1) > SUM_TOLERANCE, total, 1.0)
         data = matrix.data / np.repeat(whole, np.diff(matrix.indptr))
         matrix = csr_array((data, matrix.indices, matrix.indptr), matrix.shape)
     for array in (matrix.data, matrix.indices, matrix.indptr):

@@ -29,7 +29,7 @@ from .painted import Painted
 Which = NDArray[np.intp] | None
 """Vertices, ascending; None for all."""
 Rows = tuple[Which, Any]
-NEAR = 1.5
+SHELL_CELLS = 1.5
 """Lattice cells: shells that are closer are smoothed together, through the body."""
 NEIGHBOURS: WeakKeyDictionary[TriangleMesh, Neighbours] = WeakKeyDictionary()
 """Those that were computed: layers are applied again after each change of them."""
@@ -173,7 +173,9 @@ class RigSources:
     def _through(self) -> Neighbours:
         assert self.graph is not None
         lattice = self.graph.lattice
-        return Neighbours.of(self.rig.mesh, within=NEAR * (lattice.size / lattice.resolution))
+        return Neighbours.of(
+            self.rig.mesh, within=SHELL_CELLS * (lattice.size / lattice.resolution)
+        )
 
     def _pruned(self, rows: NDArray[np.float64], which: Which) -> NDArray[np.float64]:
         """Keep the largest weights that the file can store, unless a row would be left empty."""

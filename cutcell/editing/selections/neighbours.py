@@ -16,7 +16,7 @@ from ...geometry.weld import WELD_TOLERANCE, weld
 from ...graph import CutCellGraph
 from ...rig import TriangleMesh
 
-STEP = 0.5
+SMOOTHING_STEP = 0.5
 """Part of the way to its neighbours that a pass moves a vertex; half of it never oscillates."""
 
 
@@ -105,8 +105,10 @@ class Neighbours:
     def _step(self) -> csr_array:
         """A pass as a matrix: half the vertex, half the mean of its neighbours."""
         degree, links = np.diff(self.links.indptr), self.links
-        share = np.repeat(STEP / np.maximum(degree, 1), degree)
-        stays = dia_array((np.where(degree > 0, 1 - STEP, 1.0)[None], [0]), shape=links.shape)
+        share = np.repeat(SMOOTHING_STEP / np.maximum(degree, 1), degree)
+        stays = dia_array(
+            (np.where(degree > 0, 1 - SMOOTHING_STEP, 1.0)[None], [0]), shape=links.shape
+        )
         return csr_array((share, links.indices, links.indptr), shape=links.shape) + stays.tocsr()
 
     def _at_nodes(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -11,18 +11,18 @@ from ...animation.any_angle.contraction import Contraction
 from ...graph import CutCellGraph
 from ...graph.inside_edges import cells_inside
 
-SPACING = 0.5
+SAMPLE_SPACING = 0.5
 """Lattice cells between samples of a segment."""
 BESIDE = 0.2
 """Lattice cells: a sample is also taken as inside if a point this far from it along an axis is, so
 that segments may run along the surface."""
-TOLERANCE = SPACING / 2 + BESIDE
+SAMPLED_TOLERANCE = SAMPLE_SPACING / 2 + BESIDE
 """Lattice cells: no point of a segment whose samples are all inside is farther from the body."""
 _STEPS = BESIDE * np.concatenate([np.eye(3), -np.eye(3)])
 
 
 class Inside:
-    """Test for points and segments inside the body, at most `TOLERANCE` outside, by winding number.
+    """Test by winding number for points and segments inside the body, or `SAMPLED_TOLERANCE` off.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Inside:
         The k-th of m samples represents the k-th of m equal parts of the segment.
         """
         cells = np.linalg.norm(end - start, axis=1) * self._graph.lattice.resolution
-        counts = np.maximum(np.ceil(cells / SPACING).astype(int), 1)
+        counts = np.maximum(np.ceil(cells / SAMPLE_SPACING).astype(int), 1)
         stop = np.cumsum(counts)
         number = np.arange(stop[-1]) - np.repeat(stop - counts, counts)
         share = (number + 0.5) / np.repeat(counts, counts)

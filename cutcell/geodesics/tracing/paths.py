@@ -21,8 +21,8 @@ PIECES = ("mesh edge", "interior edge", "surface edge", "line of sight", "outsid
 """Kinds of the pieces of a path. The first three are edges of the graph, numbered as its kinds of
 edges; a line of sight cuts across the body. Outside lies what leaves the body to reach a bone that
 is not in it, and that alone."""
-LINE_OF_SIGHT, OUTSIDE = 3, 4
-ROUNDING = 1e-12
+LINE_OF_SIGHT, OUTSIDE_PIECE = 3, 4
+SAME_LENGTH = 1e-12
 """Lengths that differ by less than this, in the unit cube, are equal."""
 
 
@@ -99,7 +99,7 @@ def trace_path(
     np.minimum.at(source, sources.node, sources.distance)
     chain, inside = _descend(graph, field, source, node), distances.inside
     feet = _nearest_on(bones, graph.nodes[chain])
-    at_source = field[chain[-1]] >= source[chain[-1]] - ROUNDING
+    at_source = field[chain[-1]] >= source[chain[-1]] - SAME_LENGTH
     if not at_source and not inside.segments(graph.nodes[chain[-1:]], feet[-1:])[0].all():
         chain = _search(graph, source, node)
         feet = _nearest_on(bones, graph.nodes[chain])
@@ -127,7 +127,7 @@ def _descend(
     """
     indptr, indices, lengths = graph.adjacency
     chain = [node]
-    while field[chain[-1]] < source[chain[-1]] - ROUNDING:
+    while field[chain[-1]] < source[chain[-1]] - SAME_LENGTH:
         current = chain[-1]
         around = slice(indptr[current], indptr[current + 1])
         near, length = indices[around], lengths[around]
@@ -177,5 +177,5 @@ def _to_bone(
     (is_in,) = inside.segments(start[None], foot[None])
     change = np.flatnonzero(np.diff(is_in)) + 1
     share = np.append(change, len(is_in)) / len(is_in)
-    kinds = np.where(is_in[np.append(0, change)], LINE_OF_SIGHT, OUTSIDE)
+    kinds = np.where(is_in[np.append(0, change)], LINE_OF_SIGHT, OUTSIDE_PIECE)
     return start + share[:, None] * (foot - start), kinds.astype(np.uint8)

@@ -9,7 +9,7 @@ from ...geometry.edges import find_edges
 from ...geometry.triangles import normals
 from .patches import NONE, find_patches
 
-OPEN = 0.5
+OPEN_SHEET = 0.5
 """Faces are a sheet, which encloses nothing, if their area vectors sum to this share of the area.
 The area of the caps of their holes is no less."""
 
@@ -48,7 +48,7 @@ def find_reversed(
     flips, patch, *_ = find_patches(vertices, single, find_edges(single).partner, sizes)
     areas[flips] *= -1
     sums = np.stack([np.bincount(patch, column) for column in areas.T], axis=1)
-    is_sheet = np.linalg.norm(sums, axis=1) >= OPEN * np.bincount(patch, sizes)
+    is_sheet = np.linalg.norm(sums, axis=1) >= OPEN_SHEET * np.bincount(patch, sizes)
     goes_on = np.ones(len(faces), np.bool_)
     goes_on[first] = goes_on[second] = False
     is_sheet[patch[goes_on]] = False

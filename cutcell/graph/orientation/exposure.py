@@ -18,9 +18,9 @@ from ...runtime.threads import in_threads
 from ..rays import column_span, height_between
 
 LINES = 12
-SAMPLES = 2, 32
+PATCH_SAMPLES = 2, 32
 """Points on each patch, at least and at most."""
-MAX_SAMPLES = 4096
+MAX_PATCH_SAMPLES = 4096
 """On all patches together, unless there are more than half as many patches."""
 COINCIDENT = 1e-9
 """A face this close to a point does not hide it: it is the other side of a doubled sheet."""
@@ -105,7 +105,7 @@ def _samples(
     first = np.flatnonzero(np.diff(patch[selected], prepend=-1))
     last = np.append(first[1:], len(selected)) - 1
     low = np.concatenate([[0], reached[last[:-1]]])
-    each = int(np.clip(MAX_SAMPLES // len(first), *SAMPLES))
+    each = int(np.clip(MAX_PATCH_SAMPLES // len(first), *PATCH_SAMPLES))
     share = (np.arange(each) + 0.5) / each
     places = low[:, None] + share * (reached[last] - low)[:, None]
     sampled = np.clip(np.searchsorted(reached, places), first[:, None], last[:, None]).ravel()

@@ -22,15 +22,15 @@ from ..winding.treecode.caps import cap_holes
 from .exposure import exposure
 from .patches import find_patches, measure_faces
 
-OPEN = 0.5
+OPEN_PATCH = 0.5
 """A patch is a sheet, which encloses nothing, if its holes have this share of its own area."""
-FLAT = 1e-6
+FLAT_VOLUME = 1e-6
 """Volumes below this, relative to area^(3/2), count as zero. For a sphere the ratio is 0.09."""
-SEEN = 0.02
+MIN_ESCAPING = 0.02
 """The least share of rays that escape from a side that is seen from outside."""
-CLEARLY = 3.0
+CLEARLY_OUTER = 3.0
 """The outer side must see the outside by this factor more than the other."""
-HIDDEN = 0.05
+MAX_ESCAPING = 0.05
 """The wall of a void sees the outside by less than this share of rays, through leaks."""
 HOLLOW = 0.1
 """A body is hollow if its voids have this part of its volume; a closed mouth has 0.001."""
@@ -94,19 +94,19 @@ def _find_inverted(
     faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
     area = np.bincount(patch, areas)
     holes, missing = _cap(vertices, rims, of_rim, len(area))
-    is_sheet = holes >= OPEN * area
+    is_sheet = holes >= OPEN_PATCH * area
     volume = np.bincount(patch, volumes) + missing
-    doubtful = ~is_sheet & (volume < -FLAT * area**1.5)
+    doubtful = ~is_sheet & (volume < -FLAT_VOLUME * area**1.5)
     if area[is_sheet].sum() > area.sum() / 2:
         doubtful |= is_sheet  # in a soup nothing else decides
     if not doubtful.any():
         return flips, np.zeros_like(flips)
     front, back = exposure(vertices, faces, patch, doubtful, report)
-    wrong = (back >= SEEN) & (back >= CLEARLY * front)
-    right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
+    wrong = (back >= MIN_ESCAPING) & (back >= CLEARLY_OUTER * front)
+    right = (front >= MIN_ESCAPING) & (front >= CLEARLY_OUTER * back) | ~(doubtful | is_sheet)
     if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():
         wrong = ~right  # undecidable patches were inverted with the rest
-    is_void = doubtful & ~is_sheet & ~wrong & (np.maximum(front, back) < HIDDEN)
+    is_void = doubtful & ~is_sheet & ~wrong & (np.maximum(front, back) < MAX_ESCAPING)
     is_void &= -volume[is_void].sum() >= HOLLOW * np.abs(volume[~is_void & ~is_sheet]).sum()
     return flips ^ wrong[patch], is_void[patch]
 

@@ -12,7 +12,7 @@ from ...geometry.vectors import between, dot, length, triangle_normal
 from ...runtime.compiled import compiled
 
 NONE = -1
-SAME = 0.99
+SAME_NORMAL = 0.99
 """Cosine between the normals of duplicate faces, at least."""
 
 
@@ -75,7 +75,7 @@ def _without_duplicates(
     corners = vertices[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
     pairs = normals(corners)
     sizes = np.linalg.norm(pairs, axis=2).prod(axis=0)
-    same = np.einsum("ij,ij->i", *pairs) > SAME * sizes
+    same = np.einsum("ij,ij->i", *pairs) > SAME_NORMAL * sizes
     partner = partner.copy()
     partner[half_edge[same]] = NONE
     return partner

@@ -22,17 +22,17 @@ from ...errors import ParameterError
 from ...geometry.sorting import sort_by_group
 from ...geometry.weld import weld
 from ...rig import TriangleMesh
-from ...runtime.compiled import compiled, no_refcount
+from ...runtime.compiled import compiled, inlined, no_refcount
 from ...runtime.threads import in_threads, parts
 from ..lattice import Lattice
 from ..rays import column_span, edge_height, height_between
 from .boundary import find_boundary
 
-MAX_CELLS = 16
+MAX_FACE_CELLS = 16
 """Cells of the grid that a face is listed in, on average: those of a fan cover most of it."""
 INFINITESIMAL = 1e-150
 """Smaller than any distance, yet its product with one does not underflow."""
-TINY = 1e-100
+TERMS_RESCALED_BELOW = 1e-100
 """Products are rescaled below this, and above its inverse, before they under- or overflow."""
 
 
@@ -105,7 +105,7 @@ def _bin_faces(vertices, faces):
         low, high = np.clip((extent * cells).astype(np.int64), 0, cells - 1)
         size = high - low + 1
         count = size.prod(axis=1)
-        if count.sum() <= MAX_CELLS * len(faces):
+        if count.sum() <= MAX_FACE_CELLS * len(faces):
             break
         cells //= 2  # a cell is then listed with as many of the faces that cover many
     face = np.repeat(np.arange(len(faces), dtype=np.int32), count)
@@ -173,7 +173,7 @@ def _boundary_angle(vertices, boundary, pu, pv, height):
             size = abs(real) + abs(imaginary)
             if size == 0:
                 continue  # the point lies on the edge
-            if size < TINY:
+            if size < TERMS_RESCALED_BELOW:
                 real, imaginary = real / size, imaginary / size
             was, y = y, x * imaginary + y * real + 0.0  # never -0.0
             x = x * real - was * imaginary
@@ -182,12 +182,12 @@ def _boundary_angle(vertices, boundary, pu, pv, height):
             elif was < 0 and imaginary < 0 and y >= 0:
                 turns -= 1
             size = abs(x) + abs(y)
-            if size < TINY or size > 1 / TINY:
+            if size < TERMS_RESCALED_BELOW or size > 1 / TERMS_RESCALED_BELOW:
                 x, y = x / size, y / size
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@compiled(inline="always")
+@inlined
 def _relative(vertices, a, pu, pv, height):
     """Return u and v of a vertex relative to the ray's start, and |a| + a.d."""
     u, v, w = vertices[a, 0] - pu, vertices[a, 1] - pv, vertices[a, 2] - height

@@ -21,7 +21,7 @@ from ...errors import CutcellError, FileError, SkeletonError, WeightsError
 from ...rig import Rig, Skeleton, TriangleMesh
 from ..files import HALVES, Allowance, has_halves, one_line, read_bytes, whole_characters
 from ..skeletons import SkeletonFile
-from ..weights import KEY, NO_WEIGHTS, ReadWeights, loaded_rig, summed
+from ..weights import DEFORM_KEY, NO_WEIGHTS, ReadWeights, loaded_rig, summed
 
 SUFFIXES = {".npz": rb"PK[\0-\xff]{28}\w+\.npy"}
 NOTE = "Articulation-XL"
@@ -49,9 +49,9 @@ def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     parents, names = _parents(arrays, count), _names(arrays, count)
     warnings = [HALVES] if any(map(has_halves, names)) else []
     skeleton = Skeleton(joints, parents, tuple(map(whole_characters, names)))
-    stored = arrays.get(KEY)
+    stored = arrays.get(DEFORM_KEY)
     if stored is not None and (stored.dtype != np.bool_ or stored.shape != (count,)):
-        warnings.append(f"{KEY} is ignored; it is no array of true or false for each joint")
+        warnings.append(f"{DEFORM_KEY} is ignored; it is no array of true or false for each joint")
         stored = None
     return loaded_rig(mesh, skeleton, weights, path.stem, stored, warnings)
 
@@ -167,7 +167,7 @@ def write(path: Path, rig: Rig) -> dict[Path, bytes]:
         "joints": skeleton.joints,
         "bones": np.stack([skeleton.parents[children], children], axis=1).astype(np.int32),
         "root_index": np.array(int(np.flatnonzero(skeleton.parents < 0)[0])),
-        KEY: skeleton.deform,
+        DEFORM_KEY: skeleton.deform,
         "joint_names": np.array([whole_characters(name) for name in skeleton.names], np.str_),
     }
     if rig.weights is not None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import FileError, WeightsError
 from ...rig import Rig
+from ..gltf.buffer import ranges_in
 from ..gltf.container import extensions, malformed
+from ..gltf.nodes import Nodes
 from ..gltf.read.compressed import plain_document
-from ..gltf.read.read import GltfSource, read_gltf
+from ..gltf.read.parts import unread
+from ..gltf.read.read import GltfSource, read_bare, read_rig, skinned_nodes
 from ..gltf.write.new import can_be_skinned, check_fits, new_files, skinned
 from ..gltf.write.write import rewritten
 from ..skeletons import SkeletonFile, of_document
@@ -23,7 +27,17 @@ AVATAR = ("VRM", "VRMC_vrm")
 
 def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
     """Load a rig."""
-    return read_gltf(path, accessories, bare)
+    with malformed():
+        document = plain_document(path)
+        if bare and not skinned_nodes(Nodes(document)):
+            rig = read_bare(document, Nodes(document))
+        else:
+            rig = read_rig(document, accessories=accessories)
+        many = ("accessors", "animations")  # which name buffers by views
+        rest = {key: value for key, value in document.json.items() if key not in many}
+        for owner in ranges_in(rest):  # saving copies them
+            document.view_range(owner, "a buffer view")
+        return replace(rig, warnings=(*unread(document), *rig.warnings))
 
 
 def read_skeleton(path: Path) -> SkeletonFile:

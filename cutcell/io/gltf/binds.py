@@ -14,14 +14,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-NEAR = 1e-3
+from ...rig.transforms import moved
+
+IN_PLACE = 1e-3
 """How far off a joint is still in its place. Lengths are in sizes of the character."""
 ORIGIN = 1e-2
 """A joint so close to the origin of its bind space may have no matrix of its own."""
-FAR, FARTHER = 0.5, 4.0
+OUT_OF_PLACE, FARTHER = 0.5, 4.0
 """A matrix of a joint's own is wrong so far off, and so many times as far as those of joints that
 hold vertices."""
-STRETCH, TURN = 0.1, 0.02
+FRAME_STRETCH, TURN = 0.1, 0.02
 """How much a frame may be stretched by a pose, and turned where there is none."""
 SOFT = 0.05
 """Distance of two positions of a character at which one counts little for the other."""
@@ -29,7 +31,7 @@ LEAN = 0.15
 """How far a posed character may stand from its topmost joint, which is seldom posed."""
 CONFIRMED = 0.05
 """A topmost joint that holds nothing is right if this part of the weight agrees with it."""
-HIDDEN = 1e-2
+HIDDEN_SCALE = 1e-2
 """A joint is hidden that is so small for the largest of its skin."""
 MAX_CANDIDATES = 256
 
@@ -69,7 +71,9 @@ class BoundSkin:
         self.is_blank = ~self.is_solvable | self.is_at_origin | self._is_repeated()
         self.is_held = (self.shares > 0) & ~np.isnan(self.inverse).all(axis=(1, 2))
         scales = np.abs(np.linalg.det(self.world[:, :3, :3])) ** (1 / 3)
-        shows = self.is_solvable & invertible(self.skinning) & (scales > HIDDEN * scales.max())
+        shows = (
+            self.is_solvable & invertible(self.skinning) & (scales > HIDDEN_SCALE * scales.max())
+        )
         trusted = self.is_held & shows
         self.is_trusted = trusted if trusted.any() else ~self.is_blank & shows
         at = self.trusted()
@@ -105,13 +109,13 @@ class BoundSkin:
     def box(self) -> NDArray[np.float64]:
         """Return the corners of the box in the scene, shape (8, 3)."""
         grid = np.stack(np.meshgrid(*self.corners.T, indexing="ij"), axis=-1).reshape(-1, 3)
-        return grid if self.stands is None else _moved(grid, self.stands)
+        return grid if self.stands is None else moved(grid, self.stands)
 
     def shifts(self) -> NDArray[np.float64]:
         """Return how far the nodes of trusted joints are from where all stands, in the scene."""
         if self.stands is None:
             return np.zeros(0)
-        bound = _moved(self.frames[self.is_trusted, :3, 3], self.stands)
+        bound = moved(self.frames[self.is_trusted, :3, 3], self.stands)
         return np.linalg.norm(bound - self.world[self.is_trusted, :3, 3], axis=1)
 
 
@@ -150,7 +154,7 @@ def _mend(skin: BoundSkin, size: float, shifts: NDArray[np.float64]) -> None:
             assert skin.stands is not None
             stands = skin.skinning[below[k]] if below[k] >= 0 else skin.stands
             frame = np.linalg.inv(stands) @ skin.world[k]
-        tolerance = NEAR if is_below_good else max(SOFT, 2 * shift)
+        tolerance = IN_PLACE if is_below_good else max(SOFT, 2 * shift)
         tolerance = tolerance if skin.is_blank[k] else far
         if skin.is_solvable[k] and not _contradicts(skin, k, frame, size, shift, tolerance):
             continue
@@ -176,11 +180,11 @@ def _first_below(skin: BoundSkin) -> list[int]:
 
 def _far_limit(skin: BoundSkin, size: float, shift: float) -> float:
     """Return the distance beyond which a stored matrix of a joint is wrong."""
-    limit = max(FAR, FARTHER * shift)
+    limit = max(OUT_OF_PLACE, FARTHER * shift)
     stored = np.flatnonzero(~skin.is_held & ~skin.is_blank)
     if skin.stands is None or not len(stored):
         return limit
-    bound = _moved(skin.frames[stored, :3, 3], skin.stands)
+    bound = moved(skin.frames[stored, :3, 3], skin.stands)
     off = np.linalg.norm(bound - skin.world[stored, :3, 3], axis=1) / (size * skin.scale)
     # Where many are off, these nodes are in no pose of the bound character.
     return limit if (off > limit).sum() <= skin.is_trusted.sum() / 2 else np.inf
@@ -199,7 +203,7 @@ def _contradicts(
     change = np.linalg.solve(frame[:3, :3], bound[:3, :3])
     stretch = np.abs(np.linalg.svd(change, compute_uv=False) - 1).max()
     turn = np.abs(change - np.eye(3)).max()
-    return bool(stretch > STRETCH or (turn > TURN and shift <= ORIGIN))
+    return bool(stretch > FRAME_STRETCH or (turn > TURN and shift <= ORIGIN))
 
 
 @np.errstate(over="ignore")  # the box may have no extent
@@ -231,7 +235,7 @@ def agreed(matrices: NDArray, shares: NDArray, corners: NDArray) -> NDArray[np.f
     heaviest = np.sort(np.argsort(-shares, kind="stable")[:MAX_CANDIDATES])
     near = [np.exp(-apart(matrices, matrices[k], corners) / SOFT) for k in heaviest.tolist()]
     scores = np.array([(shares * one).sum() for one in near])
-    first = int(np.flatnonzero(scores >= scores.max() * (1 - NEAR))[0])
+    first = int(np.flatnonzero(scores >= scores.max() * (1 - IN_PLACE))[0])
     return matrices[heaviest[first]]
 
 
@@ -240,10 +244,10 @@ def apart(matrices: NDArray, other: NDArray, corners: NDArray) -> NDArray[np.flo
     box = np.eye(4)
     box[:3, :3] = np.diag(np.maximum(np.ptp(corners, axis=0) / 2, np.finfo(float).tiny))
     box[:3, 3] = corners.mean(axis=0)
-    moved, reference = (matrices @ box)[:, :3], (other @ box)[:3]
-    sizes = np.linalg.norm(moved[..., :3], axis=(1, 2))
+    placed, reference = (matrices @ box)[:, :3], (other @ box)[:3]
+    sizes = np.linalg.norm(placed[..., :3], axis=(1, 2))
     sizes = np.maximum(np.maximum(sizes, np.linalg.norm(reference[:, :3])), np.finfo(float).tiny)
-    return np.linalg.norm(moved - reference, axis=(1, 2)) / sizes
+    return np.linalg.norm(placed - reference, axis=(1, 2)) / sizes
 
 
 def invertible(matrices: NDArray) -> NDArray[np.bool_]:
@@ -253,7 +257,3 @@ def invertible(matrices: NDArray) -> NDArray[np.bool_]:
         size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
         finite = np.isfinite(matrices).all(axis=(-2, -1)) & np.isfinite(size)
         return finite & (size > 0) & (np.abs(np.linalg.det(linear)) > 1e-9 * size)
-
-
-def _moved(points: NDArray, matrix: NDArray) -> NDArray[np.float64]:
-    return points @ matrix[:3, :3].T + matrix[:3, 3]

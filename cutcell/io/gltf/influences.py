@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...rig.rig import normalised
-from ..weights import KEY
+from ..weights import DEFORM_KEY
 from .container import Document
 
 
@@ -72,7 +72,7 @@ def store_deform(
     for skin, joints in skins:
         extras = document["skins"][skin].setdefault("extras", {})
         if isinstance(extras, dict):  # glTF allows any value; another one is not ours to replace
-            extras[KEY] = deform[list(joints)].tolist()
+            extras[DEFORM_KEY] = deform[list(joints)].tolist()
 
 
 def read_deform(
@@ -82,14 +82,14 @@ def read_deform(
     stored = np.full(count, -1, np.int8)
     for skin, joints in skins.items():
         extras = document.json["skins"][skin].get("extras")
-        if not isinstance(extras, dict) or KEY not in extras:
+        if not isinstance(extras, dict) or DEFORM_KEY not in extras:
             continue
-        flags = extras[KEY]
+        flags = extras[DEFORM_KEY]
         if isinstance(flags, list) and [type(flag) for flag in flags] == [bool] * len(joints):
             stored[joints] = np.maximum(stored[joints], flags)
         else:
             document.warnings.append(
-                f"{document.label('skins', skin)}: {KEY} in its extras is ignored; it is no list "
-                f"of true or false for each of the {len(joints)} joints"
+                f"{document.label('skins', skin)}: {DEFORM_KEY} in its extras is ignored; it is no "
+                f"list of true or false for each of the {len(joints)} joints"
             )
     return stored

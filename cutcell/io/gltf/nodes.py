@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import FileError, SkeletonError
-from ...rig.checks import LARGEST
+from ...rig.checks import MAX_COORDINATE
+from ...rig.transforms import composed
 from .container import Document, extensions, indices
 
 NODE_POINTER = re.compile("/nodes/(0|[1-9][0-9]{0,8})/(translation|rotation|scale|weights)")
@@ -34,11 +35,11 @@ class Nodes:
         self.local = self._read_transforms()  # (k, 4, 4)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
             self.world = self.relative_to([])
-        far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
+        far = np.flatnonzero(~(np.abs(self.world) <= MAX_COORDINATE).all(axis=(1, 2)))
         if len(far):
             raise FileError(
                 f"{document.label('nodes', int(far[0]))}: its place in the scene has numbers above "
-                f"{LARGEST:g}; give it and the nodes above it smaller transforms"
+                f"{MAX_COORDINATE:g}; give it and the nodes above it smaller transforms"
             )
 
     def _read_transforms(self) -> NDArray[np.float64]:
@@ -60,10 +61,10 @@ class Nodes:
             numbers = np.array(value, np.float64)
         except (TypeError, ValueError, OverflowError):
             numbers = np.zeros(0)
-        if numbers.shape != (count,) or not (np.abs(numbers) <= LARGEST).all():
+        if numbers.shape != (count,) or not (np.abs(numbers) <= MAX_COORDINATE).all():
             raise FileError(
                 f'{self.document.label("nodes", i)}: "{key}" must be {count} finite numbers, '
-                f"{LARGEST:g} at most"
+                f"{MAX_COORDINATE:g} at most"
             )
         return numbers
 
@@ -87,15 +88,9 @@ class Nodes:
 
     def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
         """Return matrices, shape (k, 4, 4), to the nearest of some nodes above, or the scene."""
-        relative = self.local.copy()
-        parents = np.array(self.parents, int)
-        chosen = np.zeros(len(self.raw), bool)
-        chosen[nodes] = True
-        relative[chosen] = np.eye(4)
-        for level in self.levels[1:]:
-            other = level[~chosen[level]]
-            relative[other] = relative[parents[other]] @ relative[other]
-        return relative
+        relative, parents = self.local.copy(), np.array(self.parents, int)
+        relative[nodes], parents[nodes] = np.eye(4), -1
+        return composed(relative, parents)
 
     def in_scene(self) -> list[int]:
         """Return the nodes of the default scene, ascending; all when there is no scene."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,7 +18,7 @@ from ..gltf.influences import is_influence
 from ..gltf.read.accessors import find_accessor
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_palette import Group, Palette, image_notes
-from .surfaces import Corners, SurfacePaint, Surfaces, join_corners
+from .surfaces import Corners, Surfaces, join_corners, paint_surface
 from .transfer import has_materials, read_corners, read_materials
 
 _Look: TypeAlias = tuple[FaceColors | None, Corners]
@@ -39,7 +40,7 @@ def with_surface_looks(buffer: BufferWriter, surfaces: Surfaces | None) -> Buffe
         return buffer
     document, data = buffer.document, buffer.finish()
     collected = Collected(surfaces.notes)
-    paint = SurfacePaint(surfaces, collected)
+    paint = partial(paint_surface, surfaces, collected)
     view = Document(surfaces.path, document, [data])
     looks: dict[int, _Look] = {}
     for number, surface in surfaces.meshes.items():

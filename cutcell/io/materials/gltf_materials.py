@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,71 +74,64 @@ def is_coloured(drawn: Iterable[Primitive]) -> bool:
     return len(factors) > 1 or any(len(set(factor)) > 1 for factor in factors)
 
 
-class PrimitivePaint:
-    """Colours primitives, one after the other; see `face_colors.Paint`."""
-
-    def __init__(self, collected: Collected) -> None:
-        self.collected = collected
-
-    def __call__(self, primitive: Primitive, at: NDArray, colors: FaceColors) -> None:
-        """Fill the rows of one primitive; `at` are its vertices by its own numbers."""
-        try:
-            base = _base(primitive)
-        except (CutcellError, *MALFORMED) as error:
-            self._note(primitive, error)
-            return
-        factor, corners = np.array(base.factor), colors.corners
+def paint_primitive(
+    collected: Collected, primitive: Primitive, at: NDArray, colors: FaceColors
+) -> None:
+    """Fill the rows of a primitive; `at` are its vertices by its own numbers; see `Paint`."""
+    document = primitive.document
+    with _noted(collected, primitive):
+        base, corners = _base(primitive), colors.corners
         if base.material is not None:
             name = base.material.get("name")
             named = name if isinstance(name, str) else ""
-            colors.materials[:] = self.collected.material(primitive.json["material"], named)
-        self._fill(colors, base, factor)
-        try:
+            colors.materials[:] = collected.material(primitive.json["material"], named)
+        _fill(colors, base, np.array(base.factor))
+        with _noted(collected, primitive):
             if "COLOR_0" in primitive.attributes:
-                self._fill(colors, base, factor * _vertex_colors(primitive)[at])
-        except (CutcellError, *MALFORMED) as error:
-            self._note(primitive, error)
-        try:
+                _fill(colors, base, base.factor * _vertex_colors(primitive)[at])
+        with _noted(collected, primitive):
             if base.texture:
-                texture = primitive.document.item("textures", base.texture["index"], "a material")
+                texture = document.item("textures", base.texture["index"], "a material")
                 uv = places(primitive, base.texture)[at]
                 sampler: dict[str, Any] = {}
                 if "sampler" in texture:
-                    sampler = primitive.document.item("samplers", texture["sampler"], "a texture")
+                    sampler = document.item("samplers", texture["sampler"], "a texture")
                 across, down = (WRAPS.get(sampler.get(key, 0), REPEAT) for key in WRAP_KEYS)
                 corners[..., 3] += 3 * across + down
-                corners[..., 2] = self._layer(primitive.document, texture, sampler, base)
-                corners[..., :2] = uv
-        except (CutcellError, *MALFORMED) as error:
-            self._note(primitive, error)
+                use = _layer(texture, sampler, base)
+                stored = partial(stored_image, document, use.image)
+                corners[..., 2], corners[..., :2] = collected.layer(use, stored), uv
 
-    def _fill(self, colors: FaceColors, base: _Base, rgba: NDArray) -> None:
-        colors.tints[:] = srgb(rgba[..., :3])
-        if base.blended:
-            alpha = np.clip(np.nan_to_num(rgba[..., 3]), 0, 1)
-            colors.opacity[:] = np.round(OPAQUE * alpha)
-            colors.corners[..., 3] = BLENDED
 
-    def _note(self, primitive: Primitive, error: Exception) -> None:
-        material: Any = primitive.json.get("material")
-        try:
-            label = primitive.document.label("materials", material)
-        except CutcellError:
-            label = "a material"
-        self.collected.note(label, error)
+@contextmanager
+def _noted(collected: Collected, primitive: Primitive) -> Iterator[None]:
+    """Note what cannot be read of a material, and go on without it."""
+    try:
+        yield
+    except (CutcellError, *MALFORMED) as error:
+        label, material = "a material", primitive.json.get("material")
+        with suppress(CutcellError):
+            label = primitive.document.label("materials", material)  # type: ignore[arg-type]
+        collected.note(label, error)
 
-    def _layer(
-        self, document: Document, texture: dict[str, Any], sampler: dict[str, Any], base: _Base
-    ) -> int:
-        """Return the number of the use of a texture's image by a material."""
-        source = extension(texture, "EXT_texture_webp").get("source", texture.get("source"))
-        if source is None:
-            raise FileError("its image is in a format that is not read (PNG, JPEG and WebP are)")
-        cutoff = None
-        if base.material.get("alphaMode") == "MASK":  # the image's alpha is times the factor's
-            cutoff = float(base.material.get("alphaCutoff", CUTOFF)) / max(base.factor[3], 1e-3)
-        use = Layer(source, sampler.get("magFilter") == NEAREST, cutoff, base.blended)
-        return self.collected.layer(use, lambda: stored_image(document, source))
+
+def _fill(colors: FaceColors, base: _Base, rgba: NDArray) -> None:
+    colors.tints[:] = srgb(rgba[..., :3])
+    if base.blended:
+        alpha = np.clip(np.nan_to_num(rgba[..., 3]), 0, 1)
+        colors.opacity[:] = np.round(OPAQUE * alpha)
+        colors.corners[..., 3] = BLENDED
+
+
+def _layer(texture: dict[str, Any], sampler: dict[str, Any], base: _Base) -> Layer:
+    """Return the use of a texture's image by a material."""
+    source = extension(texture, "EXT_texture_webp").get("source", texture.get("source"))
+    if source is None:
+        raise FileError("its image is in a format that is not read (PNG, JPEG and WebP are)")
+    cutoff = None
+    if base.material.get("alphaMode") == "MASK":  # the image's alpha is times the factor's
+        cutoff = float(base.material.get("alphaCutoff", CUTOFF)) / max(base.factor[3], 1e-3)
+    return Layer(source, sampler.get("magFilter") == NEAREST, cutoff, base.blended)
 
 
 def _vertex_colors(primitive: Primitive) -> NDArray:

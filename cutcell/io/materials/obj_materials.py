@@ -17,17 +17,17 @@ from ..files import read_beside
 from ..obj import ObjMesh, numbered_words
 from .surfaces import ImageFile, Material, Surface, Surfaces
 
-LARGEST = 2**24
+MAX_MTL_BYTES = 2**24
 """Bytes of a .mtl file."""
 MAX_LIBRARIES = 64
-OPTIONS = {
+IMAGE_OPTIONS = {
     **dict.fromkeys(("-o", "-s", "-t"), 3),
     "-mm": 2,
     **dict.fromkeys(("-blendu", "-blendv", "-boost", "-bm", "-cc", "-clamp"), 1),
     **dict.fromkeys(("-colorspace", "-imfchan", "-texres", "-type"), 1),
 }
 """Options of images, with the largest number of words that follow."""
-NUMBERS = ("-o", "-s", "-t", "-mm")
+NUMBER_OPTIONS = ("-o", "-s", "-t", "-mm")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def _materials(
     notes: dict[str, None] = {}
     for label, names in list(_libraries(contents.libraries))[:MAX_LIBRARIES]:
         try:
-            text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
+            text = read_beside(path, names, label, MAX_MTL_BYTES).decode("utf-8", "replace")
         except FileError as error:
             notes[f"the materials of {path.name} are not used: {error}"] = None
             continue
@@ -120,10 +120,10 @@ def _opacity(fields: dict[str, list[str]]) -> float:
 def _file(tokens: list[str]) -> str:
     """Return the file of an image, without the options before it."""
     tokens = list(tokens)
-    while tokens and tokens[0].lower() in OPTIONS:
+    while tokens and tokens[0].lower() in IMAGE_OPTIONS:
         option = tokens.pop(0).lower()
-        for _ in range(OPTIONS[option]):
-            if not tokens or (option in NUMBERS and not _numbers(tokens[:1])):
+        for _ in range(IMAGE_OPTIONS[option]):
+            if not tokens or (option in NUMBER_OPTIONS and not _numbers(tokens[:1])):
                 break
             tokens.pop(0)
     return " ".join(tokens)

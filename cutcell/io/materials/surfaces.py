@@ -88,57 +88,60 @@ class Surfaces:
         varied = (one.colors for one in painted if one.colors is not None)
         return (bool(shades) and not grey) or any((c != c[0, 0, 0]).any() for c in varied)
 
-
-class SurfacePaint:
-    """Colours faces of surfaces, one mesh after the other; see `face_colors.Paint`."""
-
-    def __init__(self, surfaces: Surfaces, collected: Collected) -> None:
-        self.surfaces, self.collected = surfaces, collected
-
-    def __call__(self, surface: Surface | None, at: NDArray, colors: FaceColors) -> None:
-        """Fill the rows of one mesh; `at` are its vertices by its own numbers."""
-        where = None if surface is None else stored_corners(surface.faces, at)
-        if surface is None or where is None:
-            return
-        material = surface.material[where[:, 0] // 3]
-        places = None if surface.places is None else surface.places.reshape(-1, 2)[where]
-        for k in np.unique(material[material >= 0]).tolist():
-            rows = np.flatnonzero(material == k)
-            one = self.surfaces.materials[k]
-            colors.materials[rows] = self.collected.material(k, one.name)
-            colors.tints[rows] = one.tint
-            through = one.blended or one.opacity < 1
-            colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
-            colors.corners[rows, :, 3] = BLENDED * through
-            try:
-                layer = self._layer(one, places)
-            except CutcellError as error:
-                self.collected.note(f'material "{one.name}"' if one.name else "a material", error)
-                continue
-            if layer >= 0 and places is not None:
-                if one.replaced:
-                    colors.tints[rows] = OPAQUE
-                colors.corners[rows, :, 2] = layer
-                colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
-        if surface.colors is not None:
-            colors.tints[:] = np.round(colors.tints * (surface.colors.reshape(-1, 3)[where] / 255))
-
-    def _layer(self, material: Material, places: NDArray | None) -> int:
-        """Return the number of a material's use of its image; -1 for none."""
-        if material.image < 0:
-            return -1
-        if places is None:
-            raise FileError("its mesh has no texture coordinates")
-        instead = material.tint if material.replaced else None
-        use = Layer(material.image, blended=material.blended, color=instead)
-        return self.collected.layer(use, lambda: self._stored(material.image))
-
-    def _stored(self, number: int) -> StoredImage:
-        image = self.surfaces.images[number]
+    def stored_image(self, number: int) -> StoredImage:
+        """Return an image as it is stored, in the file or beside it."""
+        image = self.images[number]
         name = next(filter(None, image.names), "").replace("\\", "/").rsplit("/", 1)[-1]
         label = f'image "{name[:80]}"' if name else "an image"
-        content = image.content or read_beside(self.surfaces.path, image.names, label)
-        return StoredImage(label, content)
+        return StoredImage(label, image.content or read_beside(self.path, image.names, label))
+
+
+def paint_surface(
+    surfaces: Surfaces,
+    collected: Collected,
+    surface: Surface | None,
+    at: NDArray,
+    colors: FaceColors,
+) -> None:
+    """Fill the rows of a mesh; `at` are its vertices by its own numbers; see `Paint`."""
+    where = None if surface is None else stored_corners(surface.faces, at)
+    if surface is None or where is None:
+        return
+    material = surface.material[where[:, 0] // 3]
+    places = None if surface.places is None else surface.places.reshape(-1, 2)[where]
+    for k in np.unique(material[material >= 0]).tolist():
+        rows = np.flatnonzero(material == k)
+        one = surfaces.materials[k]
+        colors.materials[rows] = collected.material(k, one.name)
+        colors.tints[rows] = one.tint
+        through = one.blended or one.opacity < 1
+        colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
+        colors.corners[rows, :, 3] = BLENDED * through
+        try:
+            layer = _layer(surfaces, collected, one, places)
+        except CutcellError as error:
+            collected.note(f'material "{one.name}"' if one.name else "a material", error)
+            continue
+        if layer >= 0 and places is not None:
+            if one.replaced:
+                colors.tints[rows] = OPAQUE
+            colors.corners[rows, :, 2] = layer
+            colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
+    if surface.colors is not None:
+        colors.tints[:] = np.round(colors.tints * (surface.colors.reshape(-1, 3)[where] / 255))
+
+
+def _layer(
+    surfaces: Surfaces, collected: Collected, material: Material, places: NDArray | None
+) -> int:
+    """Return the number of a material's use of its image; -1 for none."""
+    if material.image < 0:
+        return -1
+    if places is None:
+        raise FileError("its mesh has no texture coordinates")
+    instead = material.tint if material.replaced else None
+    use = Layer(material.image, blended=material.blended, color=instead)
+    return collected.layer(use, lambda: surfaces.stored_image(material.image))
 
 
 def scene_surfaces(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,10 @@ from ...rig import Rig
 from ..gltf.container import Document
 from ..gltf.read.primitives import Primitive, StoredFaces, primitives, read_triangles
 from ..gltf.read.read import BareSource, GltfSource
-from .face_colors import Collected, Materials, face_colors
-from .gltf_materials import PrimitivePaint, is_coloured
+from .face_colors import Collected, Materials, Paint, face_colors
+from .gltf_materials import is_coloured, paint_primitive
 from .obj_materials import ObjSource
-from .surfaces import Corners, Piece, Surface, SurfacePaint, Surfaces, join_corners
+from .surfaces import Corners, Piece, Surface, Surfaces, join_corners, paint_surface
 
 BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
@@ -58,9 +59,9 @@ def read_materials(rig: Rig) -> Materials | None:
     else:
         return None
     collected = Collected(() if surfaces is None else surfaces.notes)
-    paint: Any = PrimitivePaint(collected) if document is not None else None
+    paint: Paint = partial(paint_primitive, collected)
     if surfaces is not None:
-        paint = SurfacePaint(surfaces, collected)
+        paint = partial(paint_surface, surfaces, collected)
     colors = [face_colors(faces, pieces, paint) for faces, pieces in meshes]
     whole = tuple(one for one in colors if one is not None)
     if len(whole) < len(colors):
@@ -92,8 +93,8 @@ def _stored_surface(document: Document, one: StoredFaces) -> Surface | None:
     """Return what the file of a document stores of the faces of a primitive."""
     if document.surfaces is not None:
         return document.surfaces.meshes.get(one.mesh)
-    primitive, corners = primitives(document, one.mesh)[one.primitive], {}
-    faces = primitive.faces()
+    primitive = primitives(document, one.mesh)[one.primitive]
+    faces, corners = primitive.faces(), dict[str, Any]()
     for key, name, kind in (("normals", "NORMAL", "VEC3"), ("places", "TEXCOORD_0", "VEC2")):
         if name in primitive.attributes:
             with suppress(CutcellError):

@@ -9,19 +9,19 @@ from scipy.spatial import cKDTree
 from ...geometry.triangles import label_components, normals
 from ..mesh import TriangleMesh
 
-SPACING = 0.02
+SURFACE_SPACING = 0.02
 """Distance of samples of the surface, in longest sides."""
-CELL = SPACING / 2
+CELL = SURFACE_SPACING / 2
 """Size of cells whose samples become one, in longest sides."""
 MAX_SPLITS = 50
 """Along each side of a triangle, whatever its size."""
-INSIDE = 0.3
+INSIDE_BODY = 0.3
 """Threshold of the winding number: open meshes are never whole."""
 WELD = 1 << 20
 """Steps of a grid along the longest side: vertices in one cell are the same."""
-BLOCK = 2_000_000
+PAIRS_TOGETHER = 2_000_000
 """Pairs of point and sample that are looked at together."""
-MAX_SAMPLES = 10_000_000
+MAX_SURFACE_SAMPLES = 10_000_000
 """Of large triangles in one place there may be any number: all are then cut less small."""
 
 
@@ -42,24 +42,24 @@ class Body:
         return (points - self._low) / self.size
 
     def to_surface(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Measure from points (p, 3) to the surface, to about `SPACING` / 2."""
+        """Measure from points (p, 3) to the surface, to about `SURFACE_SPACING` / 2."""
         return np.asarray(self._tree.query(points)[0])
 
     def inside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which points (p, 3) the surface encloses; `SPACING` from it at least."""
+        """Return which points (p, 3) the surface encloses; `SURFACE_SPACING` from it at least."""
         winding = np.zeros(len(points))
-        step = max(1, BLOCK // len(self.points))
+        step = max(1, PAIRS_TOGETHER // len(self.points))
         for first in range(0, len(points), step):
             away = self.points - points[first : first + step, None]
             cubed = np.einsum("psi,psi->ps", away, away) ** 1.5
             covered = np.einsum("psi,si->ps", away, self.areas) / cubed
             winding[first : first + step] = covered.sum(axis=1)
-        return winding > INSIDE * 4 * np.pi
+        return winding > INSIDE_BODY * 4 * np.pi
 
     def away(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Measure from points (p, 3) to the body, 0 inside of it."""
         away = self.to_surface(points)
-        deep = np.flatnonzero(away > SPACING)
+        deep = np.flatnonzero(away > SURFACE_SPACING)
         away[deep[self.inside(points[deep])]] = 0.0
         return away
 
@@ -70,7 +70,7 @@ class Body:
         volume = np.einsum("mi,mi->m", a, np.cross(b, c))
         dots = [np.einsum("mi,mi->m", x, y) for x, y in ((a, b), (b, c), (c, a))]
         below = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
-        return bool(np.arctan2(volume, below).sum() > INSIDE * 2 * np.pi)
+        return bool(np.arctan2(volume, below).sum() > INSIDE_BODY * 2 * np.pi)
 
 
 def _outward(vertices: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
@@ -93,11 +93,11 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     Samples in each cell of a grid are merged, so that fine meshes have no more than coarse.
     """
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS)
-    excess = max(1, np.sqrt((splits**2).sum() / MAX_SAMPLES))
+    splits = np.clip(np.ceil(sides / SURFACE_SPACING), 1, MAX_SPLITS)
+    excess = max(1, np.sqrt((splits**2).sum() / MAX_SURFACE_SAMPLES))
     splits = np.maximum(splits / excess, 1).astype(int)
     order = np.argsort(splits, kind="stable")
-    block = np.cumsum(splits[order] ** 2) // (BLOCK // 4)
+    block = np.cumsum(splits[order] ** 2) // (PAIRS_TOGETHER // 4)
     sums = np.empty((0, 7))  # of each cell: the sums of its points and areas, and their number
     for some in np.split(order, np.flatnonzero(np.diff(block)) + 1):
         sums = np.concatenate([sums, _cut(corners[some], splits[some])])

@@ -199,8 +199,8 @@ CONVENTIONS = (
 """Rows of tools, and the last one with words that count everywhere."""
 
 GENERAL = CONVENTIONS[-1]
-KINDS = ("controls", "ends", "sockets", "unsure", "roots", "bones")
-SHARED = 0.75
+JOINT_KINDS = ("controls", "ends", "sockets", "unsure", "roots", "bones")
+COMMON_WORD = 0.75
 """Part of the names: a word that more of them have says nothing about one."""
 REASONS = {
     "controls": "control, by its name",
@@ -222,7 +222,7 @@ def kinds_by_name(names: Sequence[str]) -> list[tuple[str, str]]:
     counts = Counter(word for text, _ in texts for word in set(text.split()))
     kinds = []
     for name, (text, side) in zip(names, texts, strict=True):
-        rare = [word for word in text.split() if counts[word] <= max(SHARED * len(names), 4)]
+        rare = [word for word in text.split() if counts[word] <= max(COMMON_WORD * len(names), 4)]
         kinds.append(
             ("controls", REASONS["controls"])
             if is_neutral(name)
@@ -258,5 +258,5 @@ def _kind(
 
 def _first(row: Convention, name: str) -> str:
     """Return the first kind of a row whose names a name is of, or none."""
-    patterns = ((kind, getattr(row, kind)) for kind in KINDS)
+    patterns = ((kind, getattr(row, kind)) for kind in JOINT_KINDS)
     return next((kind for kind, pattern in patterns if pattern and re.search(pattern, name)), "")

@@ -13,26 +13,26 @@ from ...geometry.segments import distance_to_segment
 from ..mesh import TriangleMesh
 from ..rig import FAR_OUTSIDE
 from ..skeleton import Skeleton
-from .body import SPACING, Body
+from .body import SURFACE_SPACING, Body
 from .conventions import kinds_by_name
-from .joints import BONE, EXACT, OUTSIDE, Joints
+from .joints import BONE, OFF_BODY_DISTANCE, SAME_POSITION, Joints
 
 FEW_BONES = 0.15
 """Distance from the body at which a root may lie whose children are all other joints."""
-SAME_PLACE = 0.01
+CONTROL_DISTANCE = 0.01
 """Largest distance of a control from the joint that it controls, relative to the longest side."""
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
 IK = re.compile(r"\bikp?\b")
 """In names of controls of inverse kinematics."""
-NEARER = 0.5
+LACKING_RATIO = 0.5
 """Distance of skin from a joint, relative to its nearest bone, at which it lacks the joint."""
 LACKING = 0.03
 """Part of the skin that must lack a joint for the joint to deform."""
-MAX_OUTSIDE = 0.1
+MAX_LACKING_DISTANCE = 0.1
 """Distance from the body beyond which no skin lacks a joint, in longest sides."""
 
-MAX_JOINTS = 2_000
+MAX_PLACED_JOINTS = 2_000
 """Joints beyond which only names count, since places would take minutes."""
 
 OFF_BODY = "outside of the body"
@@ -85,7 +85,7 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton, body: Body | None = No
     skeleton.require_joints()
     guess = _Guess(skeleton, body or Body(mesh))
     guess.by_name()
-    if len(skeleton.joints) <= MAX_JOINTS and guess.is_in_body():
+    if len(skeleton.joints) <= MAX_PLACED_JOINTS and guess.is_in_body():
         guess.by_place()
         guess.by_skin()
     if not guess.deform.any():  # a rig of nothing but controls: then they are what moves it
@@ -98,12 +98,12 @@ class _Guess(Joints):
     def __init__(self, skeleton: Skeleton, body: Body) -> None:
         super().__init__(skeleton, body)
         self.kinds = kinds_by_name(self.names)
-        if len(self.joints) <= MAX_JOINTS:
+        if len(self.joints) <= MAX_PLACED_JOINTS:
             self.distance = body.away(self.joints)
 
     def is_in_body(self) -> bool:
         """Return whether the mesh is a body, not a garment: most bones are near it."""
-        near = self.distance[self.deform] <= OUTSIDE
+        near = self.distance[self.deform] <= OFF_BODY_DISTANCE
         return bool(near.sum() > ENOUGH_NEAR * len(near))
 
     def by_name(self) -> None:
@@ -131,9 +131,9 @@ class _Guess(Joints):
             away = np.linalg.norm(self.joints[sure] - self.joints[j], axis=1)
             away[np.isin(sure, self.chain(j))] = np.inf
             k = sure[away.argmin()] if len(sure) else j
-            if away.min(initial=np.inf) <= SAME_PLACE:
+            if away.min(initial=np.inf) <= CONTROL_DISTANCE:
                 self.rule_out(j, f'control at the place of "{self.names[k]}"')
-            elif self.distance[j] > SPACING:
+            elif self.distance[j] > SURFACE_SPACING:
                 self.rule_out(j, "control outside of the body")
             elif parent >= 0 and "control" in self.reason[parent]:
                 self.rule_out(j, "part of a control")
@@ -151,9 +151,9 @@ class _Guess(Joints):
             if not self.deform[j]:
                 continue
             below = self.bones_below(j)
-            if OUTSIDE < self.distance[j] < FAR_OUTSIDE and not len(below):
+            if OFF_BODY_DISTANCE < self.distance[j] < FAR_OUTSIDE and not len(below):
                 self.rule_out(j, OFF_BODY)
-            elif self.distance[j] <= OUTSIDE and not len(below) and self.ends_a_bone(j):
+            elif self.distance[j] <= OFF_BODY_DISTANCE and not len(below) and self.ends_a_bone(j):
                 self.rule_out(j, "end marker: no skin beyond it")
             elif len(self.children[j]):
                 absent[j] = all(absent[k] or self.reason[k] == OFF_BODY for k in self.children[j])
@@ -188,7 +188,7 @@ class _Guess(Joints):
 
     def _inner(self, joint: int, below: NDArray[np.intp]) -> None:
         """Rule out a joint that was never placed; note one at its child, or outside of the body."""
-        if self.distance[joint] > OUTSIDE:
+        if self.distance[joint] > OFF_BODY_DISTANCE:
             self.doubt(joint, OFF_BODY)
         elif len(below) == 1 and self.together(joint, below[0]):
             self.doubt(joint, f'at the place of "{self.names[below[0]]}"')
@@ -204,7 +204,7 @@ class _Guess(Joints):
     def _doubled(self) -> None:
         """Rule out the shorter of two chains on the same places."""
         bones = np.flatnonzero(self.deform)
-        pairs = bones[cKDTree(self.joints[bones]).query_pairs(EXACT, output_type="ndarray")]
+        pairs = bones[cKDTree(self.joints[bones]).query_pairs(SAME_POSITION, output_type="ndarray")]
         place = np.arange(len(self.joints))
         for a, b in pairs:
             place[max(a, b)] = min(place[a], place[b])
@@ -235,7 +235,7 @@ class _Guess(Joints):
         candidates = [
             j
             for j in np.flatnonzero(~self.deform).tolist()
-            if self.distance[j] <= MAX_OUTSIDE
+            if self.distance[j] <= MAX_LACKING_DISTANCE
             and self.kinds[j][0] != "roots"
             and not (self.kinds[j][0] == "controls" and " in " in self.kinds[j][1])
         ]
@@ -249,7 +249,7 @@ class _Guess(Joints):
                 away = distance_to_segment(self.body.points, self.joints[j], end)
                 np.minimum(nearest, away, out=nearest)
         while candidates:
-            parts = [area[self.to_joint(j) < NEARER * nearest].sum() for j in candidates]
+            parts = [area[self.to_joint(j) < LACKING_RATIO * nearest].sum() for j in candidates]
             part, j = max(parts), candidates.pop(int(np.argmax(parts)))
             if part < LACKING:
                 return

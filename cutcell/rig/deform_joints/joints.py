@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..names import plain
 from ..skeleton import Skeleton
-from .body import SPACING, Body
+from .body import SURFACE_SPACING, Body
 
-EXACT = 1e-3
+SAME_POSITION = 1e-3
 """Largest distance between joints at one place, relative to the longest side of the mesh."""
 LIMB_END = r"\b(foot|feet|toes?|hoof|paw|ball|ankle|hand|wrist|palm|fingers?|claw)\b"
 """Names of bones beyond which a limb has no more that a control could move."""
@@ -24,7 +24,7 @@ ALONG = np.linspace(0.1, 0.9, 9)
 """Samples along a link."""
 NOTHING_BEYOND = 0.05
 """Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
-OUTSIDE = 0.04
+OFF_BODY_DISTANCE = 0.04
 """Distance from the body beyond which a joint moves none of it, in longest sides."""
 
 
@@ -86,7 +86,7 @@ class Joints:
 
     def together(self, joint: int, other: int) -> bool:
         """Return whether two joints are at one place."""
-        return bool(np.abs(self.joints[joint] - self.joints[other]).max() <= EXACT)
+        return bool(np.abs(self.joints[joint] - self.joints[other]).max() <= SAME_POSITION)
 
     def chain(self, joint: int) -> list[int]:
         """Return a bone and all bones below it."""
@@ -105,7 +105,7 @@ class Joints:
 
     def is_outside(self, joint: int) -> bool:
         """Return whether a joint lies outside of the body."""
-        if 0 < self.distance[joint] <= SPACING and self.body.encloses(self.joints[joint]):
+        if 0 < self.distance[joint] <= SURFACE_SPACING and self.body.encloses(self.joints[joint]):
             return False
         return bool(self.distance[joint] > 0)
 
@@ -125,7 +125,7 @@ class Joints:
         """Return whether a link to any of the others runs through the body."""
         away = self.joints[others] - self.joints[joint]
         points = (self.joints[joint] + ALONG[:, None] * away[:, None]).reshape(-1, 3)
-        near = self.body.to_surface(points) <= OUTSIDE
+        near = self.body.to_surface(points) <= OFF_BODY_DISTANCE
         near[~near] = self.body.inside(points[~near])
         return bool((near.reshape(-1, len(ALONG)).mean(axis=1) >= THROUGH_BODY).any())
 

@@ -94,12 +94,11 @@ def _panel(axes: Any, comparison: Comparison, methods: list[str], metric: str) -
     for row, name in enumerate(methods):
         index = comparison.methods.index(name)
         values = [rig.scores[index].values.get(metric) for rig in comparison.rigs]
-        scored = [k for k, value in enumerate(values) if value is not None]
-        x = [max(values[k], LEAST if metric == "deformation" else 0) for k in scored]
+        scored = {k: value for k, value in enumerate(values) if value is not None}
+        least = LEAST if metric == "deformation" else 0
+        x, y = [max(value, least) for value in scored.values()], row + shake[[*scored]]
         color, statistic = _color(name), comparison.statistic(name, metric)
-        axes.plot(
-            x, row + shake[scored], "o", color=color, alpha=0.45, markersize=4.5, markeredgewidth=0
-        )
+        axes.plot(x, y, "o", color=color, alpha=0.45, markersize=4.5, markeredgewidth=0)
         axes.plot([statistic.median] * 2, [row - 0.33, row + 0.33], color=color, linewidth=2.6)
         axes.plot(
             statistic.mean, row, "D", color="white", markersize=4.8, markeredgecolor=color, zorder=3

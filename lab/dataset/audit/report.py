@@ -14,8 +14,9 @@ from cutcell.runtime.display import printable
 from cutcell.runtime.writing import write_all
 
 from ..bind.binding import BindReport
+from ..read.entry import read_entry
 from ..read.sources import Source, read_source
-from ..read.store import METRICS, STAGES, read_entry
+from ..read.store import METRICS, STAGES
 from .duplicates import Audit, Pair
 from .pictures import picture
 

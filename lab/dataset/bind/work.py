@@ -22,8 +22,9 @@ from cutcell.graph.rays import expected_hits
 from cutcell.rig import Rig, Skeleton
 
 from ...metrics import deformation_error, precision_recall, weight_l1
+from ..read.entry import Entry, entry_bytes
 from ..read.sources import Content, read_content
-from ..read.store import Entry, Outcome, Parameters, entry_bytes
+from ..read.store import Outcome, Parameters
 
 COPIES = 8
 """Maximum number of tables of vertices by joints, or vertices by bones, at a time."""

@@ -20,8 +20,9 @@ from cutcell.io.gltf.container import beside
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .archive import MEMBER
+from .entry import read_entry
 from .formats import read_samples, read_unirig, samples_of
-from .store import STORE, Store, read_entry
+from .store import STORE, Store
 
 RAW = "raw_data.npz"
 """UniRig's name for one rig; the folder it is in names the rig."""

@@ -8,7 +8,6 @@ assets, tens of gigabytes: each entry is yielded as soon as it is complete, and 
 
 from __future__ import annotations
 
-import io
 import math
 import pickle
 import re
@@ -21,6 +20,8 @@ from numpy.typing import NDArray
 
 from cutcell.errors import FileError
 
+from .limited_stream import LimitedStream
+
 MAX_BYTES = 2**30
 """Largest size of one entry in the pickle."""
 MAX_ITEMS = 10_000_000
@@ -29,7 +30,6 @@ MAX_DEPTH = 20
 """Containers inside each other."""
 MAX_REMEMBERED = 200
 """Length of a text or tuple that later entries may share, such as the shape of an array."""
-BUFFER = 2**20
 DTYPE = re.compile(r"[biufc]\d{1,2}|[SU]\d{1,6}|O8?")
 
 
@@ -78,7 +78,7 @@ class _DataUnpickler(_Unpickler):
     dispatch: ClassVar[dict[int, Callable]] = dict(_Unpickler.dispatch)
 
     def __init__(self, stream: IO[bytes], what: str, max_bytes: int) -> None:
-        self._limited = _LimitedStream(stream, what, max_bytes)
+        self._limited = LimitedStream(stream, what, max_bytes)
         super().__init__(self._limited, encoding="latin-1")
         self.memo = _Memo()
         self._what = what
@@ -185,31 +185,6 @@ class _DataUnpickler(_Unpickler):
         (pickle.NEWOBJ_EX, lambda self: self.load_newobj(2)),
     ):
         dispatch[_code[0]] = _load
-
-
-class _LimitedStream:
-    """A stream that refuses to read more than an entry may take."""
-
-    def __init__(self, stream: IO[bytes], what: str, max_bytes: int) -> None:
-        self._stream = io.BufferedReader(stream, BUFFER)  # type: ignore[type-var]
-        self._what, self._max = what, max_bytes
-        self.bytes_read = 0
-
-    def read(self, size: int) -> bytes:
-        self._count(size)
-        return self._stream.read(size)
-
-    def readline(self) -> bytes:
-        line = self._stream.readline(self._max - self.bytes_read + 1)
-        self._count(len(line))
-        return line
-
-    def _count(self, size: int) -> None:
-        self.bytes_read += size
-        if self.bytes_read > self._max:
-            raise FileError(
-                f"{self._what} holds an entry of more than {self._max / 1e9:.2g} GB; it is damaged"
-            )
 
 
 class _Memo(list):

@@ -10,10 +10,10 @@ from cutcell import ParameterError, Skeleton, TriangleMesh, load
 from cutcell.animation.any_angle.contraction import _sorted_by_place, contract
 from cutcell.animation.any_angle.theta_star import SPAN, any_angle_paths, least_distances
 from cutcell.animation.any_angle.wavefront import partition_sources
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 from cutcell.geodesics.solver import find_sources
 from cutcell.geometry.segments import distance_to_segment
-from cutcell.geometry.sparse_rows import to_dense
+from cutcell.rig.rows import to_dense
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.bars import fork
@@ -180,7 +180,7 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
     graph, skeleton = chain_in_the_l()
     bones = bone_distances(graph, skeleton).bones
     contraction = contract(graph)
-    sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
+    sources = find_sources(graph, bones, 5, NodeGrid.of(graph), contraction)
     nodes = contraction.node
     every = to_dense(any_angle_paths(graph, contraction, sources, bones, nodes)).T
     least = least_distances(graph, contraction, sources, bones)
@@ -211,7 +211,7 @@ def test_distances_do_not_depend_on_how_vertices_are_numbered():
     nodes = np.arange(graph.first_point, dtype=np.int32)
 
     def measured(contraction):
-        sources = find_sources(graph, bones, 5, NodeTree.of(graph), contraction)
+        sources = find_sources(graph, bones, 5, NodeGrid.of(graph), contraction)
         least = least_distances(graph, contraction, sources, bones)[contraction.number]
         few = any_angle_paths(graph, contraction, sources, bones, nodes, nearest=3, within=6)
         return least, to_dense(few)

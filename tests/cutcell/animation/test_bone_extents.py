@@ -1,5 +1,6 @@
 """Bones end where the body and the chain of joints say."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from cutcell import Skeleton, TriangleMesh
 from cutcell.animation.bone_extents.fit import fit_bones
 from cutcell.animation.bone_extents.probe import BodyProbe
 from cutcell.animation.bone_extents.rest_axis import rest_directions
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 from tests import meshes
 from tests.bars import grid_box
 from tests.paper import bone_distances, build_graph
@@ -26,13 +27,13 @@ def on_axis(*x):
 
 def ends(graph, skeleton, joint):
     """List where a joint's bones end, in the file's units."""
-    bones, _ = fit_bones(graph, skeleton, NodeTree.of(graph))
+    bones, _ = fit_bones(graph, skeleton, NodeGrid.of(graph))
     return graph.lattice.to_file(bones.end[bones.joint == joint])
 
 
 def test_probe_knows_a_box():
     graph = build_graph(TriangleMesh(*meshes.box(0.0, 1.0)), 32)
-    probe = BodyProbe(graph, NodeTree.of(graph))
+    probe = BodyProbe(graph, NodeGrid.of(graph))
     points = np.array([[0.5, 0.5, 0.5], [0.9, 0.5, 0.5], [1.02, 0.5, 0.5], [1.3, 0.5, 0.5]])
     np.testing.assert_array_equal(probe.inside(points), [True, True, False, False])
     np.testing.assert_array_equal(probe.near(points), [True, True, True, False])
@@ -86,7 +87,7 @@ def test_a_foot_hung_on_the_root_continues_the_shin():
     root, foot = [0.5, -0.6, 0.1], [0.8, 0.1, 0.1]
     skeleton = Skeleton([root, *on_axis(0.2, 0.5), foot], [-1, 0, 1, 0])
     np.testing.assert_allclose(ends(graph, skeleton, 2), on_axis(0.8))
-    assert fit_bones(graph, skeleton, NodeTree.of(graph))[0].inferred == ((2, 3),)
+    assert fit_bones(graph, skeleton, NodeGrid.of(graph))[0].inferred == ((2, 3),)
     # The root itself is outside: it has no bone.
     np.testing.assert_allclose(ends(graph, skeleton, 0), [root])
     # Of two that are about as near neither is right: it ends where they are nearer.
@@ -113,7 +114,7 @@ def test_a_twist_joint_at_the_end_of_a_bone_has_its_far_half(parent):
     skeleton = Skeleton(on_axis(0.1, 0.4, 0.8, 0.8), [-1, 0, 1, parent], names)
     np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(0.6))
     np.testing.assert_allclose(ends(graph, skeleton, 3), on_axis(0.8))
-    bones, _ = fit_bones(graph, skeleton, NodeTree.of(graph))
+    bones, _ = fit_bones(graph, skeleton, NodeGrid.of(graph))
     np.testing.assert_allclose(
         graph.lattice.to_file(bones.start[bones.joint == 3]), on_axis(0.6), atol=1e-9
     )
@@ -132,7 +133,7 @@ def test_joints_without_a_tree_get_one(order):
     graph = limb()
     joints = np.array(on_axis(0.1, 0.25, 0.4, 0.55, 0.7))
     skeleton = Skeleton(joints[order], [-1] * 5)
-    bones, tip = fit_bones(graph, skeleton, NodeTree.of(graph))
+    bones, tip = fit_bones(graph, skeleton, NodeGrid.of(graph))
     length = np.linalg.norm(graph.lattice.to_file(bones.end) - joints[order][bones.joint], axis=1)
     assert tip.sum() == 1
     np.testing.assert_allclose(length[~tip], 0.15, atol=1e-9)
@@ -140,7 +141,7 @@ def test_joints_without_a_tree_get_one(order):
 
 def test_two_lone_joints_stay_points():
     graph = limb()
-    bones, tip = fit_bones(graph, Skeleton(on_axis(0.2, 0.8), [-1, -1]), NodeTree.of(graph))
+    bones, tip = fit_bones(graph, Skeleton(on_axis(0.2, 0.8), [-1, -1]), NodeGrid.of(graph))
     np.testing.assert_array_equal(bones.start, bones.end)
     assert tip.all()
 
@@ -196,7 +197,7 @@ def test_a_last_bone_points_along_the_rest_axis():
     # Across, there is little room.
     across = oriented(joints, parents, [x, x, x, x, up])
     np.testing.assert_allclose(ends(graph, across, 4), [[0.7, 0.1, 0.2]], atol=1 / 64)
-    assert not fit_bones(graph, across, NodeTree.of(graph))[1].any()
+    assert not fit_bones(graph, across, NodeGrid.of(graph))[1].any()
     # It is no more than three times as long as its parent's bone.
     short = oriented(on_axis(0.05, 0.1, 0.2, 0.3, 0.35), parents, [up, x, x, x, x])
     np.testing.assert_allclose(ends(graph, short, 4), on_axis(0.5), atol=1e-9)
@@ -224,7 +225,7 @@ CONTROL = [False, True, True, True]
 
 def inferred(graph, *arguments, allowed=None, **options):
     """List the joints between which bones are inferred."""
-    return fit_bones(graph, Skeleton(*arguments, **options), NodeTree.of(graph), allowed)[
+    return fit_bones(graph, Skeleton(*arguments, **options), NodeGrid.of(graph), allowed)[
         0
     ].inferred
 
@@ -271,7 +272,7 @@ def test_each_of_two_skeletons_has_the_bones_that_it_has_alone():
     two = Skeleton(np.concatenate([joints, joints + np.array([0, 0.3, 0])]), [-1, 0, 1, -1, 3, 4])
     allowed = np.zeros((len(both.vertices), 6), bool)
     allowed[: len(vertices), :3], allowed[len(vertices) :, 3:] = True, True
-    tree = NodeTree.of(graph)
+    tree = NodeGrid.of(graph)
     bones, aimed = fit_bones(graph, two, tree, allowed)
     alone, aimed_alone = fit_bones(graph, one, tree)
     np.testing.assert_array_equal(bones.end[bones.joint < 3], alone.end)
@@ -292,3 +293,16 @@ def test_a_head_goes_on_past_its_face(face, is_child):
     # Without such names a joint beside ends it, and children continue it.
     plain = ["root", "neck", "head", "a", "b"][: len(names)]
     assert (ends(graph, Skeleton([*spine, *places], parents, plain), 2)[:, 2] < 0.8).all()
+
+
+def test_a_long_list_of_joints_without_a_tree_takes_little_memory():
+    count = 300
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 16, connectivity="any")
+    places = np.random.default_rng(1).uniform(0.3, 0.7, (count, 3))
+    grid = NodeGrid.of(graph)
+    fit_bones(graph, Skeleton(places[:9], [-1] * 9), grid)
+    tracemalloc.start()
+    fit_bones(graph, Skeleton(places, [-1] * count), grid)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 20e6  # a float for each of 17 points between any two joints takes 36 MB

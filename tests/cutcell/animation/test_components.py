@@ -7,7 +7,7 @@ from scipy.sparse import csr_array
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.animation.falloff.components import POINTS, bone_containment
 from cutcell.animation.falloff.containment import (
-    RIGID,
+    RIGID_AREA,
     cross_component_penalty,
     joint_containment,
     make_rigid,
@@ -139,9 +139,9 @@ def test_a_component_follows_the_joint_that_nearly_all_of_it_follows():
     np.testing.assert_array_equal(followed[: len(one[0])], [[1, 0]] * len(one[0]))
     np.testing.assert_array_equal(followed[len(one[0]) :], weights[len(one[0]) :])
     # Up to where it is rigid, nothing jumps.
-    assert ramp(np.array([0.5, RIGID[0], np.mean(RIGID), RIGID[1]]), *RIGID) == pytest.approx(
-        [0, 0, 0.5, 1]
-    )
+    assert ramp(
+        np.array([0.5, RIGID_AREA[0], np.mean(RIGID_AREA), RIGID_AREA[1]]), *RIGID_AREA
+    ) == pytest.approx([0, 0, 0.5, 1])
     split = csr_array(np.where(vertices[:, :1] < 0.7, [0.6, 0.4], [0.4, 0.6]))
     assert make_rigid(surface, split, np.zeros(2, bool)) is split
 

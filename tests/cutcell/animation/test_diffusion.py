@@ -7,8 +7,8 @@ from scipy.sparse.linalg import spsolve
 
 import cutcell
 from cutcell.animation.falloff import diffusion
-from cutcell.animation.falloff.diffusion import NEGLIGIBLE, Diffusion
-from cutcell.animation.falloff.dissection import SMALLEST, dissect
+from cutcell.animation.falloff.diffusion import NEGLIGIBLE_WEIGHT, Diffusion
+from cutcell.animation.falloff.dissection import MIN_PART, dissect
 from cutcell.animation.falloff.surface_operators import SurfaceOperators
 from tests import meshes
 from tests.conftest import ROOT
@@ -85,7 +85,7 @@ def test_it_is_what_a_general_solver_finds(shape):
     expected = np.maximum(spsolve(csc_array(matrix), right), 0)
     expected /= expected.sum(axis=1, keepdims=True)
     result = of_surface.spread(shares).toarray()
-    np.testing.assert_allclose(result, expected, atol=10 * NEGLIGIBLE)
+    np.testing.assert_allclose(result, expected, atol=10 * NEGLIGIBLE_WEIGHT)
     assert result.sum(axis=1) == pytest.approx(1)
     assert result.min() >= 0
 
@@ -115,14 +115,14 @@ def test_blocks_divide_the_vertices_and_their_borders_hold_all_other_neighbours(
     # A surface has short separators, so that most of it is in small blocks.
     if shape is SHAPES[0]:
         assert np.diff(blocks.begin).max() < 3 * np.sqrt(count)
-        assert len(blocks.parent) > count / SMALLEST / 2
+        assert len(blocks.parent) > count / MIN_PART / 2
 
 
 def test_weights_on_their_support_are_those_on_all_vertices(monkeypatch):
     rig = cutcell.load(ROOT / "assets" / "biped_cape.glb")
     distances = cutcell.bone_distances(cutcell.build_graph(rig.mesh, 24), rig.skeleton)
     result = cutcell.skinning_weights(distances)
-    monkeypatch.setattr(diffusion, "NEGLIGIBLE", 0.0)
+    monkeypatch.setattr(diffusion, "NEGLIGIBLE_WEIGHT", 0.0)
     monkeypatch.setattr(diffusion, "MIN_SHARE", 0.0)
     np.testing.assert_allclose(result, cutcell.skinning_weights(distances), atol=1e-6)
 
@@ -132,7 +132,7 @@ def test_it_is_linear():
     halves = [csr_array(shares.toarray() * (np.arange(3) == j)) for j in range(3)]
     parts = [of_surface.equilibrium(half).toarray() for half in halves]
     expected = of_surface.equilibrium(shares).toarray()
-    np.testing.assert_allclose(sum(parts), expected, atol=10 * NEGLIGIBLE)
+    np.testing.assert_allclose(sum(parts), expected, atol=10 * NEGLIGIBLE_WEIGHT)
     nothing = of_surface.equilibrium(csr_array(shares.shape))
     assert nothing.shape == shares.shape
     assert not nothing.nnz

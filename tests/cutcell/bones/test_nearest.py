@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from cutcell.bones.nearest import NodeTree
+from cutcell.bones.nearest import NodeGrid
 
 
 @pytest.mark.parametrize("resolution", [2, 16, 64])
@@ -21,14 +21,14 @@ def test_nearest_are_those_of_all(resolution, count):
     points = np.concatenate([inside, outside, corners])
     apart = np.where(chosen, cdist(points, nodes), np.inf)
     expected = np.nonzero(apart <= apart.min(axis=1, keepdims=True) + 1e-9)
-    point, node = NodeTree(nodes, chosen, resolution).nearest(points)
+    point, node = NodeGrid(nodes, chosen, resolution).nearest(points)
     assert (np.diff(point) >= 0).all()
     assert set(zip(point, node, strict=True)) == set(zip(*expected, strict=True))
 
 
 def test_a_crowd_at_one_place_is_found_whole():
     nodes = np.full((100, 3), 0.25)
-    grid = NodeTree(nodes, np.ones(100, bool), 64)
+    grid = NodeGrid(nodes, np.ones(100, bool), 64)
     point, node = grid.nearest(np.array([[0.75, 0.5, 1.5]]))
     assert not point.any()
     assert sorted(node) == list(range(100))
@@ -43,6 +43,6 @@ def test_beside_are_those_in_neighbouring_cells(resolution):
     points = np.concatenate([random.random((400, 3)), nodes, *outside])
     cells, others = (np.floor(x * resolution) for x in (points, nodes[chosen]))
     expected = (np.abs(cells[:, None] - others).max(axis=2) <= 1).any(axis=1)
-    result = NodeTree(nodes, chosen, resolution).near(points)
+    result = NodeGrid(nodes, chosen, resolution).near(points)
     assert 0 < expected.sum() < len(points)
     np.testing.assert_array_equal(result, expected)

@@ -16,7 +16,7 @@ from cutcell import (
     WeightsError,
     bone_segments,
 )
-from cutcell.bones.bones import LONGEST
+from cutcell.bones.bones import MAX_SAMPLED_LENGTH
 from cutcell.geodesics import FALLBACK_REASONS, bone_samples
 from cutcell.geodesics.fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
 from cutcell.geometry.segments import distance_to_segment
@@ -50,7 +50,7 @@ def test_a_far_joint_that_does_not_deform_has_few_samples(leaf, deform):
         skeleton = Skeleton(joints, [-1, 0, 1], deform=deform)
         distances = cutcell.bone_distances(graph, skeleton, leaf=leaf)
         counts = np.bincount(bone_samples(graph, distances.bones)[1])
-        assert counts.max() <= LONGEST * 16 + 1
+        assert counts.max() <= MAX_SAMPLED_LENGTH * 16 + 1
         results.append(distances.joint)
     np.testing.assert_allclose(results[1], results[0], atol=0.05)
     np.testing.assert_allclose(results[2], results[1], atol=0.05)

@@ -12,7 +12,7 @@ from cutcell import (
     TriangleMesh,
 )
 from cutcell.geodesics import PIECES, path_length, trace_path
-from cutcell.geodesics.tracing.inside import TOLERANCE
+from cutcell.geodesics.tracing.inside import SAMPLED_TOLERANCE
 from cutcell_assets import demo_path
 from cutcell_lab.benchmarks.paths import outside_by, samples_of
 from tests import meshes
@@ -95,7 +95,7 @@ def test_no_piece_leaves_the_body_by_half_a_cell(demo, connectivity):
             path = trace_path(distances, joint, vertex, field)
             points, kinds = samples_of(path, 32)
             away = outside_by(distances, points)[kinds != PIECES.index("outside")]
-            assert away.max() <= TOLERANCE < 0.5
+            assert away.max() <= SAMPLED_TOLERANCE < 0.5
             assert path.length >= np.linalg.norm(path.points[-1] - path.points[0]) - 1e-12
 
 

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from cutcell import TriangleMesh
 from cutcell.bones.bones import Sources
-from cutcell.geodesics.shortest_paths import BATCH, shortest_paths
+from cutcell.geodesics.shortest_paths import BONES_TOGETHER, shortest_paths
 from tests import meshes, naive
 from tests.paper import build_graph
 
@@ -40,7 +40,7 @@ def slow(graph, sources, bones):
     return np.array(rows)
 
 
-@pytest.mark.parametrize("bones", [1, 2, BATCH, BATCH + 1, 20])
+@pytest.mark.parametrize("bones", [1, 2, BONES_TOGETHER, BONES_TOGETHER + 1, 20])
 @pytest.mark.parametrize("degree", [0, 0.7, 3, 12])  # below 1, most parts are not reached
 @pytest.mark.parametrize("seed", range(3))
 def test_random_graphs(seed, degree, bones):

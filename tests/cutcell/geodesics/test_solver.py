@@ -18,14 +18,14 @@ def test_distances_equal_those_of_a_fresh_graph(connectivity):
     graph = build_graph(TriangleMesh(*meshes.ball()), 12, connectivity=connectivity)
     solver = BoneDistanceSolver(graph)
     assert (solver.contraction is None) == (connectivity == 6)
-    contraction, tree = solver.contraction, solver.tree
+    contraction, grid = solver.contraction, solver.grid
     for count in (2, 6):
         skeleton = Skeleton(CHAIN[:count], range(-1, count - 1))
         distances = bone_distances(solver, skeleton)
         np.testing.assert_array_equal(distances.joint, bone_distances(graph, skeleton).joint)
         assert distances.solver is solver
     assert solver.contraction is contraction
-    assert solver.tree is tree
+    assert solver.grid is grid
 
 
 def test_nothing_keeps_a_graph_whose_distances_are_gone():

@@ -8,7 +8,7 @@ from cutcell.graph.winding.treecode.caps import cap_holes, smallest_caps
 from cutcell.graph.winding.treecode.clusters import ROOT, build_tree
 from cutcell.graph.winding.treecode.expansion import (
     ERROR,
-    SIZE,
+    EXPANSION_SIZE,
     add_clusters,
     add_far_clusters,
     evaluate,
@@ -16,8 +16,8 @@ from cutcell.graph.winding.treecode.expansion import (
     variation,
 )
 from cutcell.graph.winding.treecode.solid_angles import (
-    BATCH,
     CLEAR,
+    POINTS_TOGETHER,
     SIMD_WIDTH,
     VALUE,
     WORKSPACE,
@@ -35,7 +35,7 @@ def confetti():
 
 def expand(clusters, place, reach, tolerance):
     """Return the local expansion of all caps in a ball."""
-    far, near = np.zeros(SIZE), np.empty(len(clusters.start) - 1, np.int32)
+    far, near = np.zeros(EXPANSION_SIZE), np.empty(len(clusters.start) - 1, np.int32)
     ball = tuple(place), reach
     count = add_far_clusters(clusters, np.array([ROOT], np.int32), far, near, *ball)
     add_clusters(clusters, near[:count], far, *ball, tolerance)
@@ -46,7 +46,9 @@ def winding_of_caps(clusters, places, tolerance):
     """Return the caps' winding number at places in a ball, and a bound of the error."""
     count = -(-len(places) // SIMD_WIDTH) * SIMD_WIDTH
     points = np.empty(WORKSPACE)
-    points.reshape(-1, BATCH)[:3, :count] = places[np.minimum(np.arange(count), len(places) - 1)].T
+    points.reshape(-1, POINTS_TOGETHER)[:3, :count] = places[
+        np.minimum(np.arange(count), len(places) - 1)
+    ].T
     centre = places.mean(axis=0)
     reach = np.linalg.norm(places - centre, axis=1).max()
     ball = tuple(centre), reach
@@ -108,7 +110,7 @@ def test_expansion_is_right_within_its_error(name):
     assert len(fields) > 100
     expected = naive.winding_number(caps.vertices, caps.faces, np.concatenate(places))
     for field, way, known in zip(fields, ways, expected.reshape(-1, 20), strict=True):
-        off = known - evaluate(field, *way.T)
+        off = known - evaluate.py_func(field, *way.T)
         assert np.abs(off).max() <= field[ERROR] + 1e-9
 
 
@@ -144,11 +146,11 @@ def test_the_bound_is_no_more_than_it_must_be():
 
 def test_a_translated_expansion_is_the_same_function():
     rng = np.random.default_rng(3)
-    field, way, half = rng.normal(size=SIZE), rng.normal(size=3), 0.3
+    field, way, half = rng.normal(size=EXPANSION_SIZE), rng.normal(size=3), 0.3
     expected = evaluate(field, *np.add(way, [0.1, -0.2, 0.3]))
     bound = variation(field, half)
     inside = rng.uniform(-half, half, (200, 3))
-    assert (np.abs(evaluate(field, *inside.T) - field[0]) <= bound).all()
+    assert (np.abs(evaluate.py_func(field, *inside.T) - field[0]) <= bound).all()
     translate(field, *way)
     np.testing.assert_allclose(evaluate(field, 0.1, -0.2, 0.3), expected)
 

@@ -5,7 +5,7 @@ import pytest
 
 from cutcell.graph.winding.boundary import find_boundary
 from cutcell.graph.winding.treecode.caps import cap_holes
-from cutcell.graph.winding.treecode.cells import BLOCK, classify_cells
+from cutcell.graph.winding.treecode.cells import BLOCK_CELLS, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
 from cutcell.graph.winding.treecode.queries import winding_numbers_of_caps
 from tests import meshes, naive
@@ -78,8 +78,8 @@ def test_a_midpoint_on_a_cap_is_left_to_the_exact_sum():
     caps, clusters, classes = classified(vertices, faces)
     spots = np.einsum("c,tci->ti", [0.4, 0.35, 0.25], caps.vertices[caps.faces])
     cell = (spots * RESOLUTION).astype(int)
-    block = classes.coarse[tuple(cell.T // BLOCK)]
-    row = np.where(block >= 0, classes.fine[block, *(cell.T % BLOCK)], -1)
+    block = classes.coarse[tuple(cell.T // BLOCK_CELLS)]
+    row = np.where(block >= 0, classes.fine[block, *(cell.T % BLOCK_CELLS)], -1)
     assert (row >= 0).sum() > 100
     # The winding number of the triangle itself is there one half, of either sign.
     queries = row[row >= 0].astype(np.int32), spots[row >= 0], np.full((row >= 0).sum(), 0.1)

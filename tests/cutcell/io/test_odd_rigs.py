@@ -68,7 +68,7 @@ def test_a_joint_or_an_attachment_far_away_is_named(tmp_path):
 
 
 def test_more_joints_than_gltf_can_number_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell.io.gltf.write.new.MAX_JOINTS", 1)
+    monkeypatch.setattr("cutcell.io.gltf.write.new.MAX_GLTF_JOINTS", 1)
     with pytest.raises(cutcell.SkeletonError, match="at most 1 joints, and the skeleton has 2"):
         cutcell.save(tmp_path / "out.glb", small_rig())
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from cutcell import dual_quaternion_skinning, linear_blend_skinning
 from cutcell.errors import ParameterError
 from cutcell.pose import axis_rotation
-from cutcell.pose.dual_quaternions import TIE, rotation_quaternions
+from cutcell.pose.dual_quaternions import HALF_TURN, rotation_quaternions
 from cutcell_viewers.skin import MAX_INFLUENCES, Gap, Skin
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -64,7 +64,7 @@ def test_blending_one_vertex_at_a_time(seed):
     rng = np.random.default_rng(seed)
     points, pose = rng.normal(size=(20, 3)), rigid(rng, 5)
     quaternions = rotation_quaternions(pose)
-    assume((np.abs(quaternions @ quaternions.T) > 2 * TIE).all())
+    assume((np.abs(quaternions @ quaternions.T) > 2 * HALF_TURN).all())
     weights = rng.dirichlet(np.ones(5), size=20)
     weights[rng.random(20) < 0.2] = 0
     expected = [slowly(*pair, pose) for pair in zip(points, weights, strict=True)]

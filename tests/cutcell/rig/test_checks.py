@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell import MeshError, ParameterError
-from cutcell.checks import LONG, check_choice, check_flag, check_integer, check_number, shown
+from cutcell.checks import MAX_SHOWN, check_choice, check_flag, check_integer, check_number, shown
 from cutcell.rig.checks import check_positions
 
 STRANGE = [None, "5", b"5", 3 + 4j, [], [5], {}, object(), np.array([5]), np.datetime64("NaT", "s")]
@@ -55,7 +55,7 @@ class Broken:
 def test_wrong_values_are_shown_on_one_short_line():
     assert shown("many") == "'many'"
     assert shown(np.zeros((9, 9))).endswith("...")
-    assert len(shown("x" * 10_000)) == LONG
+    assert len(shown("x" * 10_000)) == MAX_SHOWN
     assert shown(10**5000) == "something of the type int"
     assert shown(Broken()) == "something of the type Broken"
 

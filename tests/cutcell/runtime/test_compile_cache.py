@@ -12,10 +12,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from numba import int64
 
 from cutcell.runtime import compile_cache, sources
-from cutcell.runtime.compile_cache import CompileCache
 from cutcell.runtime.compiled import compiled
 
 
@@ -164,25 +162,30 @@ def test_a_kernel_is_compiled_again_when_a_source_of_its_package_changes(tmp_pat
 
 
 @pytest.mark.parametrize("patience", [60, 0.1])
-def test_a_process_waits_for_what_another_one_compiles(patience, folder, monkeypatch):
+def test_a_process_waits_for_another_one_that_compiles(patience, folder, monkeypatch):
     monkeypatch.setattr(compile_cache, "PATIENCE", patience)
     source = f"""
-        import sys, time
-        from contextlib import ExitStack
+        import time
         from pathlib import Path
         from cutcell.runtime import compile_cache
         compile_cache.folders = lambda: (Path({str(folder)!r}),)
-        compile_cache._lock(sys.argv[1], stack := ExitStack())
-        print("locked", flush=True)
-        time.sleep(2)
-        compile_cache.write("done", b"")
+        with compile_cache.only_process():
+            print("locked", flush=True)
+            time.sleep(2)
+            compile_cache.mark_complete()
     """
-    name = CompileCache(one_more)._file_name((int64,))
-    command = [sys.executable, "-c", textwrap.dedent(source), name]
+    command = [sys.executable, "-c", textwrap.dedent(source)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline() == "locked\n"
-        assert outcome() == (2, "compiled")
-        assert (folder / "done").exists() is (patience > 2)
+        with compile_cache.only_process():
+            assert compile_cache.is_complete() is (patience > 2)
+
+
+def test_without_a_folder_to_lock_no_process_waits(folder, monkeypatch):
+    (folder / "file").write_text("not a folder")
+    monkeypatch.setattr(compile_cache, "folders", lambda: (folder / "file",))
+    with compile_cache.only_process(), compile_cache.only_process():
+        assert not compile_cache.is_complete()
 
 
 @pytest.mark.parametrize(

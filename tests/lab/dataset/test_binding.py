@@ -29,9 +29,10 @@ from cutcell_lab.dataset.bind.cluster import connected
 from cutcell_lab.dataset.bind.runner import AssetLostError, Runner
 from cutcell_lab.dataset.bind.work import bind_content, memory_needed, rignet_bones
 from cutcell_lab.dataset.export import export
+from cutcell_lab.dataset.read.entry import read_entry
 from cutcell_lab.dataset.read.formats import faces_of_edges
 from cutcell_lab.dataset.read.sources import Content, find_sources
-from cutcell_lab.dataset.read.store import Parameters, Store, read_entry
+from cutcell_lab.dataset.read.store import Parameters, Store
 
 QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
 

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from ....geometry.triangles import areas
 from ....geometry.weld import weld
-from ....runtime.compiled import compiled
 from ..boundary import Boundary, Caps, boundary_of
 
 GAP = 3e-3
@@ -36,7 +35,14 @@ def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close a mesh of vertices (n, 3) that has this boundary by a fan for each of its loops."""
     loop, start = boundary
-    apex, middles, faces = _fans(vertices, loop, start)
+    size = np.diff(start)
+    is_large = size > 4
+    apex = np.where(is_large, len(vertices) - 1 + np.cumsum(is_large), loop[start[:-1]])
+    sums = np.add.reduceat(vertices[loop], start[:-1]) if len(loop) else np.empty((0, 3))
+    middles = (sums / size[:, None])[is_large]
+    # Against the direction of the boundary: the edge must cancel.
+    faces = np.stack([boundary.following, loop, np.repeat(apex, size)], axis=1)
+    faces = faces[(faces[:, 2] != faces[:, 0]) & (faces[:, 2] != faces[:, 1])].astype(np.int32)
     return Caps(np.concatenate([vertices, middles]), faces, loop, start, apex)
 
 
@@ -72,27 +78,3 @@ def _strips(vertices: NDArray[np.float64], boundary: Boundary) -> Boundary:
 
 def _area(caps: Caps) -> float:
     return float(areas(caps.vertices[caps.faces]).sum())
-
-
-@compiled
-def _fans(vertices, loop, start):
-    apex, middles = np.empty(len(start) - 1, np.int64), np.zeros((len(start) - 1, 3))
-    faces = np.empty((len(loop), 3), np.int32)
-    fans = count = 0
-    for k in range(len(start) - 1):
-        begin, end = start[k], start[k + 1]
-        if end - begin <= 4:
-            apex[k] = loop[begin]
-        else:
-            apex[k] = len(vertices) + fans
-            for i in range(begin, end):
-                for axis in range(3):
-                    middles[fans, axis] += vertices[loop[i], axis] / (end - begin)
-            fans += 1
-        for i in range(begin, end):
-            after = loop[i + 1] if i + 1 < end else loop[begin]
-            if apex[k] != loop[i] and apex[k] != after:
-                # Against the direction of the boundary: the edge must cancel.
-                faces[count, 0], faces[count, 1], faces[count, 2] = after, loop[i], apex[k]
-                count += 1
-    return apex, middles[:fans].copy(), faces[:count].copy()

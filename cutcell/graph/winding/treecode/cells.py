@@ -24,16 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.vectors import between
-from ....runtime.compiled import compiled, copy_to
+from ....runtime.compiled import copy_to, no_refcount
 from ....runtime.memory import check_room
 from ....runtime.progress import Tell
 from ....runtime.threads import in_threads
-from ...rays import grown
 from .clusters import ROOT, Clusters
 from .expansion import (
     ERROR,
-    ROUNDING,
-    SIZE,
+    EXPANSION_SIZE,
+    ROUNDING_ERROR,
     LocalExpansions,
     add_clusters,
     add_far_clusters,
@@ -41,19 +40,21 @@ from .expansion import (
     variation,
 )
 
-BLOCK = 8
+BLOCK_CELLS = 8
 """Cells along the side of the blocks that are either constant or classified cell by cell."""
 CONSTANT = -(1 << 20)
 """A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
 AMBIGUOUS = 1 << 30
 """The class of blocks that are to be halved, or that have point queries."""
+CUBE_CELLS = 32
+"""Cells along the side of the cubes that are classified in parallel, at most."""
 SMALLEST = 2
 """Cells along the side of blocks that are not halved: the queries are no dearer."""
 WORTH = 20
 """Ambiguous midpoints for which it pays to halve a block."""
-TOLERANCE = 5e-3
+SPLIT_ERROR = 5e-3
 """Clusters of a larger error in a block are split."""
-COUNT = SIZE + 3
+COUNT = EXPANSION_SIZE + 3
 """The column of an expansion's row, after coefficients and centre, for the number of near
 clusters."""
 DEPTH = 12
@@ -72,8 +73,9 @@ class CellClasses(NamedTuple):
     Parameters
     ----------
     coarse : array, shape (b, b, b), int32
-        The class of each block of BLOCK^3 cells if it is constant; else the block's row of `fine`.
-    fine : array, shape (u, BLOCK, BLOCK, BLOCK), int32
+        The class of each block of BLOCK_CELLS^3 cells if it is constant; else the block's row of
+        `fine`.
+    fine : array, shape (u, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), int32
         The class of each cell.
     expansions : LocalExpansions
         Of ambiguous cells.
@@ -87,22 +89,26 @@ class CellClasses(NamedTuple):
 def classify_cells(
     clusters: Clusters,
     resolution: int,
-    winding_threshold: float,
+    tau: float,
     report: Tell = lambda done: None,
 ) -> CellClasses:
     """Bound the winding number of the caps over the cells of the lattice."""
-    blocks = -(-resolution // BLOCK)
-    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
-    corners, top = np.zeros((0, 3), np.int64), BLOCK
-    if len(clusters.apex):
-        while 4 * top < resolution:
-            top *= 2
-        along = np.arange(0, resolution, top)
-        corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
+    blocks = -(-resolution // BLOCK_CELLS)
+    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(tau)), np.int32)
+    top = BLOCK_CELLS
+    while 4 * top < resolution and top < CUBE_CELLS:
+        top *= 2
+    along = np.arange(0, resolution if len(clusters.apex) else 0, top)
+    corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
     sizes = []
 
-    def classify(corner: NDArray[np.int64]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        parts = _classify(clusters, resolution, winding_threshold, corner, top, coarse)
+    def classify(corner: NDArray[np.int64]) -> list[NDArray]:
+        arrays = _buffers(top)
+        counts = _classify(
+            clusters, resolution, tau, corner, top, coarse, *arrays,
+            _scratch(len(clusters.start) - 1),
+        )  # fmt: skip
+        parts = [array[:count].copy() for array, count in zip(arrays, counts, strict=True)]
         sizes.append(sum(array.nbytes for array in parts))
         if sum(sizes) > UNCHECKED:  # they are copied twice below
             check_room(2.0 * sum(sizes), "the cells near holes", "choose a lower resolution")
@@ -117,104 +123,135 @@ def classify_cells(
         rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
-    columns = (0, SIZE), (SIZE, COUNT)
+    columns = (0, EXPANSION_SIZE), (EXPANSION_SIZE, COUNT)
     local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
     return CellClasses(coarse, fine, LocalExpansions(centre, local, start, near))
 
 
-@compiled
-def _classify(clusters, resolution, tau, corner, top, coarse):
+def _buffers(top: int) -> list[NDArray]:
+    """Return room for all that `_classify` may find in a cube of `top` cells."""
+    blocks, rows = (top // BLOCK_CELLS) ** 3, (top // SMALLEST) ** 3
+    return [
+        np.empty((blocks, 3), np.int32),
+        np.empty((blocks, BLOCK_CELLS, BLOCK_CELLS, BLOCK_CELLS), np.int32),
+        np.empty((rows, COUNT + 1)),
+        np.empty(rows * MAX_NEAR, np.int32),
+    ]
+
+
+class _Scratch(NamedTuple):
+    """What `_classify` remembers: the blocks that wait, and of each ancestor of the current block.
+
+    Parameters
+    ----------
+    waiting : array, shape (8 DEPTH, 5), int64
+        Corner, size and depth.
+    centre : array, shape (DEPTH, 3)
+    far : array, shape (DEPTH, EXPANSION_SIZE)
+        The expansion of far clusters.
+    near : array, shape (DEPTH, m), int32
+        The first nears[i] entries are the near clusters.
+    nears : array, shape (DEPTH,), int64
+    local : array, shape (EXPANSION_SIZE,)
+    """
+
+    waiting: NDArray[np.int64]
+    centre: NDArray[np.float64]
+    far: NDArray[np.float64]
+    near: NDArray[np.int32]
+    nears: NDArray[np.int64]
+    local: NDArray[np.float64]
+
+
+def _scratch(leaves: int) -> _Scratch:
+    near = np.empty((DEPTH, leaves), np.int32)
+    near[0, 0] = ROOT
+    return _Scratch(
+        np.empty((8 * DEPTH, 5), np.int64), np.zeros((DEPTH, 3)), np.zeros((DEPTH, EXPANSION_SIZE)),
+        near, np.ones(DEPTH, np.int64), np.empty(EXPANSION_SIZE),
+    )  # fmt: skip
+
+
+@no_refcount
+def _classify(
+    clusters, resolution, tau, corner, top, coarse, blocks, fine, expanded, all_near, scratch
+):
     """Write the classes of the blocks in a cube of `top` cells into `coarse`.
 
-    Returns which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
-    expansions that these name: coefficients, centre, COUNT; and the near clusters.
+    Fills in which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
+    expansions that these name: coefficients, centre, COUNT; and the near clusters. Returns how many
+    there are of each.
     """
-    blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
-    expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
+    waiting, centre, far, near, nears, local = scratch
     rows = stored = listed = 0
-    waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
-    copy_to(corner, waiting[0])
+    waiting[0, 0], waiting[0, 1], waiting[0, 2] = corner[0], corner[1], corner[2]
     waiting[0, 3], waiting[0, 4] = top, 1
-    # For each ancestor of the current block: its centre, far expansion and near clusters.
-    centre, far, local = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
-    near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
-    near[0, 0] = ROOT
+    count = 1
     while count:
         count -= 1
-        x, y, z, size, depth = waiting[count]
+        x, y, z = waiting[count, 0], waiting[count, 1], waiting[count, 2]
+        size, depth = waiting[count, 3], waiting[count, 4]
         if max(x, y, z) >= resolution:
             continue
         half = size / (2 * resolution)
         q = x / resolution + half, y / resolution + half, z / resolution + half
         reach = half * np.sqrt(3)
+        shift = between(centre[depth - 1], q)
         centre[depth, 0], centre[depth, 1], centre[depth, 2] = q
         copy_to(far[depth - 1], far[depth])
-        shift = between(centre[depth - 1], q)
         translate(far[depth], shift[0], shift[1], shift[2])
         among = near[depth - 1, : nears[depth - 1]]
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, TOLERANCE)
+        add_clusters(clusters, close, local, q, reach, SPLIT_ERROR)
         cell_class = _class_of(local, half, size, tau)
-        a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
-        if size >= BLOCK and cell_class < 0:
-            coarse[a : a + wide, b : b + wide, c : c + wide] = cell_class
+        a, b, c = x // BLOCK_CELLS, y // BLOCK_CELLS, z // BLOCK_CELLS
+        if size >= BLOCK_CELLS and cell_class < 0:
+            _fill(coarse, a, b, c, size // BLOCK_CELLS, cell_class)
             continue
-        if size == BLOCK:
-            if rows == len(fine):
-                blocks, fine = grown(blocks), grown(fine)
+        if size == BLOCK_CELLS:
             blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
             coarse[a, b, c] = rows
             rows += 1
-        if size > BLOCK or (cell_class == AMBIGUOUS and size > SMALLEST):
-            count = _halve(waiting, count)
+        if size > BLOCK_CELLS or (cell_class == AMBIGUOUS and size > SMALLEST):
+            size //= 2
+            for k in range(8):
+                half_block = waiting[count + k]
+                half_block[0], half_block[1] = x + size * (k >> 2), y + size * (k >> 1 & 1)
+                half_block[2], half_block[3], half_block[4] = z + size * (k & 1), size, depth + 1
+            count += 8
             continue
         if cell_class >= 0:
-            if stored == len(expanded):
-                expanded = grown(expanded)
             row = expanded[stored]
             level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
             copy_to(far[level] if cell_class == AMBIGUOUS else local, row)
-            row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
+            row[EXPANSION_SIZE], row[EXPANSION_SIZE + 1], row[EXPANSION_SIZE + 2] = q
             row[COUNT] = 0
             if cell_class == AMBIGUOUS:
-                close = near[level, : nears[level]]
-                row[COUNT] = len(close)
-                while listed + len(close) > len(all_near):
-                    all_near = grown(all_near)
-                copy_to(close, all_near[listed:])
-                listed += len(close)
+                row[COUNT] = nears[level]
+                for k in range(nears[level]):
+                    all_near[listed + k] = near[level, k]
+                listed += nears[level]
             cell_class = stored
             stored += 1
-        i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
-        fine[rows - 1, i : i + size, j : j + size, k : k + size] = cell_class
-    return (
-        blocks[:rows].copy(),
-        fine[:rows].copy(),
-        expanded[:stored].copy(),
-        all_near[:listed].copy(),
-    )
+        _fill(fine[rows - 1], x % BLOCK_CELLS, y % BLOCK_CELLS, z % BLOCK_CELLS, size, cell_class)
+    return rows, rows, stored, listed
 
 
-@compiled
-def _halve(waiting, count):
-    """Replace a block by its eight halves; return how many blocks wait."""
-    x, y, z, size, depth = waiting[count]
-    size //= 2
-    for corner in range(8):
-        half = waiting[count + corner]
-        half[0] = x + size * (corner >> 2)
-        half[1] = y + size * (corner >> 1 & 1)
-        half[2] = z + size * (corner & 1)
-        half[3], half[4] = size, depth + 1
-    return count + 8
+@no_refcount
+def _fill(grid, x, y, z, size, value):
+    """Write a value into a cube of a grid."""
+    for i in range(x, x + size):
+        for j in range(y, y + size):
+            for k in range(z, z + size):
+                grid[i, j, k] = value
 
 
-@compiled
+@no_refcount
 def _class_of(local, half, size, tau):
     """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
-    error = local[ERROR] + ROUNDING
+    error = local[ERROR] + ROUNDING_ERROR
     if error >= 0.5:
         return AMBIGUOUS
     slope = variation(local, half)

@@ -32,14 +32,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.triangles import areas
-from ....geometry.vectors import between, dot
-from ....runtime.compiled import compiled
+from ....runtime.compiled import inlined
 from ..boundary import Caps
 from . import multipole
 
 ROOT = 1
 """The index of the cluster of all caps."""
-LEAF_SIZE = 4
+NO_AREA = 1e-300
+"""In place of the area of a cluster without one."""
+CAPS_A_LEAF = 4
 """Caps in a leaf of the tree, at most."""
 
 
@@ -59,7 +60,7 @@ class Clusters(NamedTuple):
     sphere : array, shape (2 m, 6)
         Of each cluster: centre and radius; an upper bound of the cubic mean of the distances
         from the centre; and the sum of the areas of its triangles.
-    moments : array, shape (2 m, multipole.SIZE)
+    moments : array, shape (2 m, multipole.MOMENTS_SIZE)
     """
 
     rim: NDArray[np.float64]
@@ -86,7 +87,7 @@ def _sort(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.in
     Returns the order, shape (l,), and where each leaf begins in it, (m + 1,).
     """
     count, level, leaves = len(points), 1, 1
-    while leaves * LEAF_SIZE < count:
+    while leaves * CAPS_A_LEAF < count:
         leaves *= 2
     order, start = np.arange(count), np.arange(leaves + 1) * count // leaves
     while level < leaves:
@@ -111,53 +112,34 @@ def _measure(
     leaves = len(start) - 1
     sphere = np.zeros((2 * leaves, 6))
     if len(rim) == 0:
-        return sphere, np.zeros((2 * leaves, multipole.SIZE))
+        return sphere, np.zeros((2 * leaves, multipole.MOMENTS_SIZE))
     before = np.arange(len(rim)) - 1
     before[first[:-1]] = first[1:] - 1
     corners = np.stack([rim, rim[before], np.repeat(apex, np.diff(first), axis=0)], axis=1)
     area = areas(corners)
+    # The cube of a distance is convex: its mean over a triangle is at most that over the corners.
+    of_rim, of_apex = area.copy(), np.add.reduceat(area, first[:-1])
+    of_rim[before] += area
     level = leaves
     while level:
-        bounds = first[start[:: leaves // level]]
-        sphere[level : 2 * level, :3] = np.add.reduceat(rim, bounds[:-1])
-        sphere[level : 2 * level, :3] /= np.diff(bounds)[:, None]
-        sphere[level : 2 * level, 5] = np.add.reduceat(area, bounds[:-1])
+        loops = start[:: leaves // level]
+        bounds, rows = first[loops], slice(level, 2 * level)
+        size = np.diff(bounds)
+        centre = np.add.reduceat(rim, bounds[:-1]) / size[:, None]
+        whole = np.add.reduceat(area, bounds[:-1])
+        away = np.linalg.norm(rim - np.repeat(centre, size, axis=0), axis=1)
+        apex_away = np.linalg.norm(apex - np.repeat(centre, np.diff(loops), axis=0), axis=1)
+        # An apex is a mean of rim vertices, so it lies within the radius, too.
+        radius = np.maximum.reduceat(away, bounds[:-1])
+        cubes = np.add.reduceat(of_rim * away**3, bounds[:-1])
+        cubes += np.add.reduceat(of_apex * apex_away**3, loops[:-1])
+        mean = np.cbrt(cubes / (3 * np.maximum(whole, NO_AREA)))
+        sphere[rows] = np.stack([*centre.T, radius, np.minimum(mean, radius), whole], axis=1)
         level //= 2
-    of_rim = area.copy()
-    of_rim[before] += area
-    _bound_spheres(rim, first, apex, start, (of_rim, np.add.reduceat(area, first[:-1])), sphere)
     return sphere, multipole.moments_of(corners, first[start[:-1]], sphere[:, :3])
 
 
-@compiled
-def _bound_spheres(rim, first, apex, start, weight, sphere):
-    """Compute radius and cubic mean distance of every cluster.
-
-    The cube of a distance is convex: its mean over a triangle is at most that over the corners.
-    """
-    leaves = len(start) - 1
-    for k in range(1, 2 * leaves):
-        low = high = k
-        while low < leaves:
-            low, high = 2 * low, 2 * high + 1
-        low, high = start[low - leaves], start[high - leaves + 1]
-        # An apex is a mean of rim vertices, so it lies within the radius, too.
-        squared = total = 0.0
-        for e in range(first[low], first[high]):
-            away = between(sphere[k], rim[e])
-            s = dot(away, away)
-            squared = max(squared, s)
-            total += weight[0][e] * s * np.sqrt(s)
-        for loop in range(low, high):
-            away = between(sphere[k], apex[loop])
-            s = dot(away, away)
-            total += weight[1][loop] * s * np.sqrt(s)
-        sphere[k, 3] = np.sqrt(squared)
-        mean = (total / (3 * sphere[k, 5])) ** (1 / 3) if total > 0 else 0.0
-        sphere[k, 4] = min(mean, sphere[k, 3])
-
-
-@compiled(inline="always")
+@inlined
 def error_bound(sphere, distance, reach):
     """Bound the error of a cluster's expansion in a ball of radius `reach` at that distance."""
     room = distance - sphere[3] - reach
@@ -169,7 +151,7 @@ def error_bound(sphere, distance, reach):
     return sphere[5] * near * near * near * series / (4 * np.pi * squared * squared * room * room)
 
 
-@compiled(inline="always")
+@inlined
 def next_cluster(k):
     """Return the cluster that follows k and its descendants in depth-first order; 0 at the end."""
     while k & 1:

@@ -1,6 +1,6 @@
 """Winding number of the caps in a ball, as a local expansion with a proven error.
 
-A local (Taylor) expansion is a row of SIZE numbers: value, gradient (x, y, z), the second
+A local (Taylor) expansion is a row of EXPANSION_SIZE numbers: value, gradient (x, y, z), the second
 derivatives (xx, yy, xy, xz, yz), and a bound of the error; zz = -xx - yy, as the function is
 harmonic.
 
@@ -24,20 +24,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....geometry.vectors import between, cross, dot, length, segment_fraction, triangle_normal
-from ....runtime.compiled import compiled, no_refcount
+from ....runtime.compiled import inlined, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
 
-SIZE = 10
-ERROR = SIZE - 1
+EXPANSION_SIZE = 10
+ERROR = EXPANSION_SIZE - 1
 """The column of the error bound."""
-NEGLIGIBLE = 5e-3
+FAR_ERROR = 5e-3
 """A cluster whose error in a ball is at most this is far from the ball."""
-ROUNDING = 1e-9
+ROUNDING_ERROR = 1e-9
 """Beyond the error bound, for rounding."""
 COARSE = 0.3
 """Near clusters of a larger error are split, to see if parts of them are far."""
-SMALL = 1e-60
+RESCALED_BELOW = 1e-60
 """Products are rescaled below this, and above its inverse, before they under- or overflow."""
 USELESS = 0.5
 """With a larger error an expansion decides nothing."""
@@ -49,7 +49,7 @@ class LocalExpansions(NamedTuple):
     Parameters
     ----------
     centre : array, shape (n, 3)
-    local : array, shape (n, SIZE)
+    local : array, shape (n, EXPANSION_SIZE)
         Of all caps, or of all but those of the near clusters.
     start : array, shape (n + 1,), int64
         The near clusters are near[start[i]] to near[start[i + 1] - 1].
@@ -62,7 +62,7 @@ class LocalExpansions(NamedTuple):
     near: NDArray[np.int32]
 
 
-@compiled(inline="always")
+@inlined
 def evaluate(local, x, y, z):
     """Return the value at a displacement (x, y, z) from the centre."""
     linear = local[1] * x + local[2] * y + local[3] * z
@@ -70,7 +70,7 @@ def evaluate(local, x, y, z):
     return local[0] + linear + square / 2 + local[6] * x * y + local[7] * x * z + local[8] * y * z
 
 
-@compiled(inline="always")
+@inlined
 def translate(local, x, y, z):
     """Move the centre by (x, y, z)."""
     local[0] = evaluate(local, x, y, z)
@@ -79,7 +79,7 @@ def translate(local, x, y, z):
     local[3] += local[7] * x + local[8] * y - (local[4] + local[5]) * z
 
 
-@compiled(inline="always")
+@inlined
 def variation(local, half):
     """Bound how far values differ from the one at the centre, in a cube of that half side."""
     linear = abs(local[1]) + abs(local[2]) + abs(local[3])
@@ -91,15 +91,16 @@ def variation(local, half):
 def add_far_clusters(clusters, among, local, near, q, reach):
     """Add the clusters that are far from a ball to its expansion, and list the others.
 
-    Shapes: local (SIZE,).
+    Shapes: local (EXPANSION_SIZE,).
     """
     count = 0
     leaves = len(clusters.start) - 1
     for top in among:
-        k, end = top, next_cluster(top)
+        k = np.int64(top)
+        end = next_cluster(k)
         while k != end:
             r, distance, error = _relative(clusters, k, q, reach)
-            if error <= NEGLIGIBLE:
+            if error <= FAR_ERROR:
                 add_multipole(local, clusters.moments[k], r, distance)
                 local[ERROR] += error
             elif error > COARSE and clusters.sphere[k, 3] > reach and k < leaves:
@@ -114,10 +115,11 @@ def add_far_clusters(clusters, among, local, near, q, reach):
 
 @no_refcount
 def add_clusters(clusters, among, local, q, reach, tolerance):
-    """Add clusters to the local expansion (SIZE,) of a ball; stop once its error is useless."""
+    """Add clusters to a ball's local expansion (EXPANSION_SIZE,), until its error is useless."""
     leaves = len(clusters.start) - 1
     for top in among:
-        k, end = top, next_cluster(top)
+        k = np.int64(top)
+        end = next_cluster(k)
         while k != end:
             r, distance, error = _relative(clusters, k, q, reach)
             # Splitting helps little where it is the ball's radius that makes the error large.
@@ -160,13 +162,13 @@ def _winding_number(rim, apex, q):
         elif was < 0 and triple < 0 and y >= 0:
             turns -= 1
         size = abs(x) + abs(y)
-        if 0 < size < SMALL or size > 1 / SMALL:
+        if 0 < size < RESCALED_BELOW or size > 1 / RESCALED_BELOW:
             x, y = x / size, y / size
         b, lb = a, la
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@compiled(inline="always")
+@inlined
 def _relative(clusters, k, q, reach):
     """Return a cluster's centre relative to q, its distance, and the error of its expansion."""
     r = between(q, clusters.sphere[k])
@@ -201,7 +203,7 @@ def _add_gradient(local, rim, apex, q, reach, may_cross):
         local[3] += g[2]
 
 
-@compiled(inline="always")
+@inlined
 def _biot_savart(a, b, la, lb):
     """Return the integral of r x dr / (4 pi |r|^3) along an edge from a to b.
 
@@ -214,14 +216,14 @@ def _biot_savart(a, b, la, lb):
     return n[0] * factor, n[1] * factor, n[2] * factor
 
 
-@compiled(inline="always")
+@inlined
 def _distance_to_edge(a, b):
     """Return the distance of the origin to the edge between a and b."""
     e, t = between(a, b), segment_fraction(a, b, (0.0, 0.0, 0.0))
     return length((a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]))
 
 
-@compiled
+@no_refcount
 def _is_within(a, b, c, reach):
     """Return whether a triangle comes within reach of the origin, without its edge a, b."""
     n = triangle_normal(a, b, c)

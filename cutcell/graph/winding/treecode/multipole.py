@@ -1,7 +1,7 @@
 """Multipole moments of triangles, and the local expansion of a distant cluster of them.
 
 The moments A(n), M(n), Q(n) of `clusters.py` are polynomials in a direction n, of first, second
-and third degree. A row of SIZE numbers holds their coefficients:
+and third degree. A row of MOMENTS_SIZE numbers holds their coefficients:
 
     x, y, z;   xx, yy, zz, xy, xz, yz;   xxx, yyy, zzz, xxy, xxz, xyy, yyz, xzz, yzz, xyz.
 """
@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.vectors import triangle_normal
-from ....runtime.compiled import compiled
+from ....geometry.triangles import normals
+from ....runtime.compiled import compiled, inlined
 
-SIZE = 19
+MOMENTS_SIZE = 19
 MONOMIALS = (
     *((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)),
     *((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 0, 1), (0, 0, 2), (0, 1, 1), (1, 1, 2), (0, 2, 2)),
@@ -30,17 +30,17 @@ SECOND, THIRD = (
 """Which products of a tensor are added up, shapes (9, 6) and (27, 10)."""
 
 
-@compiled(inline="always")
+@inlined
 def linear(p, x, y, z):
     return p[0] * x + p[1] * y + p[2] * z
 
 
-@compiled(inline="always")
+@inlined
 def square(p, x, y, z):
     return x * (p[3] * x + p[6] * y + p[7] * z) + y * (p[4] * y + p[8] * z) + p[5] * z * z
 
 
-@compiled(inline="always")
+@inlined
 def cube(p, x, y, z):
     of_x = p[9] * x * x + p[12] * x * y + p[13] * x * z + p[14] * y * y + p[16] * z * z
     of_y = p[10] * y * y + p[15] * y * z + p[17] * z * z + p[18] * x * z
@@ -53,11 +53,19 @@ def moments_of(
     """Compute the moments of the clusters of a balanced binary tree.
 
     Shapes: corners (t, 3, 3), triangles leaf by leaf; leaf (m,), the first triangle of each;
-    centre (2 m, 3); returns (2 m, SIZE).
+    centre (2 m, 3); returns (2 m, MOMENTS_SIZE).
     """
     leaves, count = len(leaf), len(centre)
     n, ny, nyy = (np.zeros((count, *shape)) for shape in ((3,), (3, 3), (3, 3, 3)))
-    _add_triangles(corners, np.append(leaf, len(corners)), centre, n, ny, nyy)
+    if len(corners) == 0:
+        return np.zeros((count, MOMENTS_SIZE))
+    normal = normals(corners)
+    y = corners - np.repeat(centre[leaves:], np.diff(leaf, append=len(corners)), axis=0)[:, None]
+    y = np.concatenate([y, y.sum(axis=1, keepdims=True)], axis=1)  # with three times the middle
+    squares = np.einsum("tca,tcb->tab", y, y)  # quadrature
+    n[leaves:] = np.add.reduceat(normal / 2, leaf)
+    ny[leaves:] = np.add.reduceat(normal[:, :, None] * y[:, None, 3] / 6, leaf)
+    nyy[leaves:] = np.add.reduceat(normal[:, :, None, None] * squares[:, None] / 24, leaf)
     level = leaves // 2
     while level:
         child = np.arange(2 * level, 4 * level)
@@ -77,28 +85,8 @@ def moments_of(
     return _harmonic(np.concatenate(rows, axis=1))
 
 
-@compiled
-def _add_triangles(corners, bounds, centre, n, ny, nyy):
-    """Sum the normals n of the triangles of each leaf, n y and n y y, by area."""
-    leaves, y = len(bounds) - 1, np.empty((4, 3))
-    for k in range(leaves, 2 * leaves):
-        for t in range(bounds[k - leaves], bounds[k - leaves + 1]):
-            normal = triangle_normal(corners[t, 0], corners[t, 1], corners[t, 2])
-            for a in range(3):
-                for c in range(3):
-                    y[c, a] = corners[t, c, a] - centre[k, a]
-                y[3, a] = y[0, a] + y[1, a] + y[2, a]
-            for i in range(3):
-                n[k, i] += normal[i] / 2
-                for a in range(3):
-                    ny[k, i, a] += normal[i] * y[3, a] / 6
-                    for b in range(3):
-                        for c in range(4):  # quadrature
-                            nyy[k, i, a, b] += normal[i] * y[c, a] * y[c, b] / 24
-
-
 def _harmonic(p: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Remove the multiples of |n|^2, (c, SIZE): 1/|r| is harmonic, so they contribute nothing."""
+    """Remove the multiples of |n|^2 from rows: 1/|r| is harmonic, so they contribute nothing."""
     p[:, 3:6] -= p[:, 3:6].mean(axis=1, keepdims=True)
     for cubic, *others in ((9, 14, 16), (10, 12, 17), (11, 13, 15)):
         excess = (3 * p[:, cubic] + p[:, others].sum(axis=1)) / 5
@@ -117,7 +105,7 @@ def in_registers(p):
     # fmt: on
 
 
-@compiled(inline="always")
+@inlined
 def add_multipole(local, p, r, distance):
     """Add a cluster's moments to a local expansion; its centre is at r, at that distance."""
     near = 1 / distance

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from ....geometry.vectors import between, length
 from ....runtime.compiled import no_refcount
 from .clusters import ROOT, Clusters
-from .expansion import ERROR, ROUNDING, LocalExpansions, evaluate
+from .expansion import ERROR, ROUNDING_ERROR, LocalExpansions, evaluate
 from .solid_angles import (
-    BATCH,
     CLEAR,
+    POINTS_TOGETHER,
     SIMD_WIDTH,
     VALUE,
     WORKSPACE,
@@ -26,9 +26,9 @@ from .solid_angles import (
     caps_winding_numbers,
 )
 
-FIRST, LAST = 1e-2, 1e-9
+FIRST_TOLERANCE, LAST_TOLERANCE = 1e-2, 1e-9
 """Tolerance of a cluster's error: at first, and below which the exact formula is faster."""
-STEP = 1e-2
+MIN_REDUCTION = 1e-2
 """The smallest factor by which the tolerance is reduced: few queries need a far smaller one."""
 SAFETY = 0.7
 """The share of a query's margin that the next error is to be."""
@@ -61,7 +61,9 @@ def _query(expansions, clusters, points, margin, row, order, every, workspace, v
     first = 0
     while first < len(order):
         end = first + 1
-        while end < min(first + BATCH, len(order)) and row[order[end]] == row[order[first]]:
+        while (
+            end < min(first + POINTS_TOGETHER, len(order)) and row[order[end]] == row[order[first]]
+        ):
             end += 1
         queries = points, margin, order[first:end]
         _query_batch(expansions, clusters, row[order[first]], queries, every, workspace, values)
@@ -74,10 +76,10 @@ def _query_batch(expansions, clusters, row, queries, every, workspace, values):
     points, margin, open_queries = queries
     centre, local = expansions.centre[row], expansions.local[row]
     near = expansions.near[expansions.start[row] : expansions.start[row + 1]]
-    use_local, tolerance = True, FIRST
-    while len(open_queries) and tolerance > LAST:
+    use_local, tolerance = True, FIRST_TOLERANCE
+    while len(open_queries) and tolerance > LAST_TOLERANCE:
         count, middle, reach = _load(open_queries, points, workspace)
-        local_error = (local[ERROR] if use_local else 0.0) + ROUNDING
+        local_error = (local[ERROR] if use_local else 0.0) + ROUNDING_ERROR
         among = near if use_local else every
         error = caps_winding_numbers(clusters, among, middle, reach, tolerance, workspace, count)
         left, least = 0, np.inf
@@ -96,10 +98,10 @@ def _query_batch(expansions, clusters, row, queries, every, workspace, values):
                     least = min(least, distance)
         open_queries = open_queries[:left]
         if use_local and local_error > HOPELESS * least:
-            use_local, tolerance = False, min(max((SAFETY * least / 2) ** 2, 1e-4), FIRST)
+            use_local, tolerance = False, min(max((SAFETY * least / 2) ** 2, 1e-4), FIRST_TOLERANCE)
         elif left:  # the error falls with about the square root of the tolerance
             share = SAFETY * (least - local_error) / error
-            tolerance *= min(max(share * share, STEP), 0.5)
+            tolerance *= min(max(share * share, MIN_REDUCTION), 0.5)
 
 
 @no_refcount

@@ -13,10 +13,10 @@ from ....runtime.compiled import no_refcount, vectorized
 from .clusters import error_bound, next_cluster
 from .multipole import cube, in_registers, linear, square
 
-BATCH = 264
+POINTS_TOGETHER = 264
 """Points at most. A constant, so that the compiler knows that rows do not overlap; no power of two,
 so that rows do not compete for one set of the cache."""
-Y, Z, VALUE, RE, IM, CLEAR, WORKSPACE = (BATCH * row for row in range(1, 8))
+Y, Z, VALUE, RE, IM, CLEAR, WORKSPACE = (POINTS_TOGETHER * row for row in range(1, 8))
 """Offsets of the rows of a workspace, after the points' x; the last one is its size. VALUE: winding
 numbers. RE, IM: complex numbers whose arguments are the angles. CLEAR: positive for points far
 enough from all caps for rounding not to matter."""
@@ -24,9 +24,9 @@ SIMD_WIDTH = 8
 """The number of points is rounded up to a multiple of this."""
 RESCALE_EVERY = 8
 """Triangles. One multiplies the complex numbers by 1e-35 (a corner 1e-15 away) to 20."""
-NEAR = 1e-7
+ON_CAP = 1e-7
 """Closer to a cap than this, relative to its size, rounding may put a point on either side."""
-TINY = 1e-300
+NO_LENGTH = 1e-300
 
 
 @no_refcount
@@ -40,7 +40,8 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
         points[VALUE + i] = points[IM + i] = 0.0
         points[RE + i] = points[CLEAR + i] = 1.0
     for top in among:
-        k, end = top, next_cluster(top)
+        k = np.int64(top)
+        end = next_cluster(k)
         while k != end:
             distance = length(between(centre, clusters.sphere[k])) - reach
             own_error = error_bound(clusters.sphere[k], distance, 0.0)
@@ -97,7 +98,7 @@ def _add_cap(rim, apex, points, count, unscaled):
 def _rescale(points, count):
     """Rescale the complex numbers before further products under- or overflow."""
     for i in range(count):
-        scale = 1 / (abs(points[RE + i]) + abs(points[IM + i]) + TINY)
+        scale = 1 / (abs(points[RE + i]) + abs(points[IM + i]) + NO_LENGTH)
         points[RE + i] *= scale
         points[IM + i] *= scale
 
@@ -127,5 +128,5 @@ def _add_triangle(p, q, r, points, count):
         down = (was < 0) & (triple < 0) & (im >= 0)
         points[VALUE + i] += np.float64(up) - np.float64(down)
         points[RE + i], points[IM + i] = re, im
-        clear = abs(triple) + max(rest, 0.0) - NEAR * la * lb * lc
+        clear = abs(triple) + max(rest, 0.0) - ON_CAP * la * lb * lc
         points[CLEAR + i] = min(points[CLEAR + i], clear)

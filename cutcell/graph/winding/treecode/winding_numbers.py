@@ -1,8 +1,12 @@
 """Winding numbers at the midpoints of segments, as exact as `w >= tau` needs them.
 
-On a closed mesh the winding number is the signed count of crossings ahead. Holes are closed by
-caps, whose own winding number is subtracted: see `cells.py` for where that takes no query, and
-`queries.py` for where it does.
+On a closed mesh the winding number w is chi, the signed count of crossings ahead. Holes are closed
+by caps: w = chi - w_caps, and `queries.py` computes w_caps. Where required = ceil(tau + w_caps) is
+the same in all of a cell (`cells.py`), no query is needed for
+
+    floored_w = tau + floor(w - tau) = tau + chi - required,
+
+which is at least tau exactly where w is.
 """
 
 from __future__ import annotations
@@ -19,13 +23,13 @@ from ...segments import NONE, Segments
 from ...surface import Surface
 from ..exact import boundary_angles
 from .caps import smallest_caps
-from .cells import BLOCK, CONSTANT, classify_cells
+from .cells import BLOCK_CELLS, CONSTANT, classify_cells
 from .clusters import build_tree
 from .queries import winding_numbers_of_caps
 
 DECIDED = -1
-BITS = BLOCK.bit_length() - 1
-"""log2 of BLOCK."""
+BITS = BLOCK_CELLS.bit_length() - 1
+"""log2 of BLOCK_CELLS."""
 
 
 class TreecodeWindingNumbers:
@@ -36,8 +40,8 @@ class TreecodeWindingNumbers:
     surface : Surface
     hits : sequence of RayHits
         Along x, y and z.
-    winding_threshold : float
-        tau.
+    tau : float
+        The winding threshold.
     report : callable
     """
 
@@ -45,14 +49,16 @@ class TreecodeWindingNumbers:
         self,
         surface: Surface,
         hits: Sequence[RayHits],
-        winding_threshold: float,
+        tau: float,
         report: Tell = lambda done: None,
     ) -> None:
-        self._surface, self._threshold = surface, winding_threshold
+        self._surface, self._tau = surface, tau
         self._crossings = [
             np.append(0.0, np.cumsum(along.sign, dtype=np.float64)) for along in hits
         ]
         self._hits = hits
+        if surface.is_closed and tau > 0:
+            return
         caps = smallest_caps(surface.vertices, surface.boundary)
         report(0.1)
         self._cap_hits = cast_all_rays(
@@ -60,55 +66,62 @@ class TreecodeWindingNumbers:
         )
         self._clusters = build_tree(caps)
         self._classes = classify_cells(
-            self._clusters, surface.resolution, winding_threshold, share_of(report, 0.4, 1)
+            self._clusters, surface.resolution, tau, share_of(report, 0.4, 1)
         )
+
+    def in_gaps(self, axis: int) -> NDArray[np.float64] | None:
+        """Return the winding number before each hit, (c,), of a closed mesh, see `segments`."""
+        if not self._surface.is_closed or self._tau <= 0:
+            return None
+        start, crossings = self._hits[axis].start, self._crossings[axis]
+        return crossings[start[1:]].repeat(np.diff(start)) - crossings[:-1]
 
     def beyond_hits(self, axis: int) -> NDArray[np.int32]:
         """Return which lattice points may be inside before a ray's first hit or beyond its last."""
         resolution, coarse = self._surface.resolution, self._classes.coarse
-        if self._surface.is_closed and self._threshold > 0:
-            return np.tile(np.array([resolution, NONE], np.int32), (resolution**2, 1))
         may_be_inside = np.moveaxis((coarse >= 0) | (coarse <= CONSTANT), AXES[axis][2], 2)
-        first = BLOCK * may_be_inside.argmax(axis=2)
-        last = BLOCK * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
+        first = BLOCK_CELLS * may_be_inside.argmax(axis=2)
+        last = BLOCK_CELLS * (len(coarse) - may_be_inside[..., ::-1].argmax(axis=2))
         is_outside = ~may_be_inside.any(axis=2)
         first[is_outside], last[is_outside] = resolution, NONE
         ends = np.stack([first, last], axis=2).astype(np.int32)
-        points = ends.repeat(BLOCK, axis=0)[:resolution].repeat(BLOCK, axis=1)[:, :resolution]
+        points = ends.repeat(BLOCK_CELLS, axis=0)[:resolution].repeat(BLOCK_CELLS, axis=1)[
+            :, :resolution
+        ]
         points = points.reshape(-1, 2)
         points[np.flatnonzero(np.diff(self._cap_hits[axis].start))] = 0, resolution
         return points
 
     def at_midpoints(self, segments: Segments) -> NDArray[np.float64]:
-        """Return numbers, shape (s,), that are at least tau exactly where the winding number is.
-
-        Where no query is needed, it is rounded down to tau plus a whole number.
-        """
+        """Return floored_w where no query is needed, else w; shape (s,)."""
         axis, ray, gap = segments.axis, segments.ray, segments.gap
         start, crossings = self._hits[axis].start, self._crossings[axis]
-        if self._surface.is_closed:
-            return crossings[start[1:]].take(ray) - crossings.take(gap)
         caps = self._cap_hits[axis]
-        w, row = _by_class(
+        floored_w, row = _by_class(
             (axis, segments.resolution, ray, gap, segments.middle),
             (start, crossings),
             (caps.start, caps.position, caps.sign),
             self._classes.coarse,
             self._classes.fine,
-            self._threshold,
+            self._tau,
         )
         query = np.flatnonzero(row != DECIDED)
-        margin = w[query] - self._threshold
-        w[query] -= winding_numbers_of_caps(
-            self._classes.expansions, self._clusters, row[query], segments.midpoints(query), margin
+        chi = floored_w[query]
+        w = chi - winding_numbers_of_caps(
+            self._classes.expansions,
+            self._clusters,
+            row[query],
+            segments.midpoints(query),
+            chi - self._tau,
         )
-        left = query[np.isnan(w[query])]
+        floored_w[query] = w
+        left = query[np.isnan(w)]
         if len(left):
             ahead = crossings[start[ray[left] + 1]] - crossings[gap[left]]
             # Between the hits of repeated faces many midpoints are at one place.
             points, index = np.unique(segments.midpoints(left), axis=0, return_inverse=True)
-            w[left] = ahead + self._boundary_angles(axis, points)[index]
-        return w
+            floored_w[left] = ahead + self._boundary_angles(axis, points)[index]
+        return floored_w
 
     def _boundary_angles(self, axis: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the winding numbers at points (q, 3) less the crossings ahead, exactly."""
@@ -120,14 +133,14 @@ class TreecodeWindingNumbers:
 
 @compiled
 def _by_class(segments, hits, cap_hits, coarse, fine, tau):
-    """Return winding numbers where the class of the cell decides, and the rows of expansions.
+    """Return floored_w where the class of the cell decides, and the rows of expansions.
 
-    Where there is a query, the row is not DECIDED and the number is that of the capped mesh.
+    Where there is a query, the row is not DECIDED and the number is chi.
     """
     axis, resolution, ray, gap, middle = segments
     end, crossings = hits
     start, position, sign = cap_hits
-    w, row = np.empty(len(ray)), np.empty(len(ray), np.int32)
+    floored_w, row = np.empty(len(ray)), np.empty(len(ray), np.int32)
     i = j = cap = last_cap = 0
     total = 0.0
     for s in range(len(ray)):
@@ -144,10 +157,11 @@ def _by_class(segments, hits, cap_hits, coarse, fine, tau):
         x, y, z = in_space(axis, i, j, cell)
         cell_class = coarse[x >> BITS, y >> BITS, z >> BITS]
         if cell_class >= 0:
-            cell_class = fine[cell_class, x % BLOCK, y % BLOCK, z % BLOCK]
-        ahead = total - crossings[gap[s]]
+            cell_class = fine[cell_class, x % BLOCK_CELLS, y % BLOCK_CELLS, z % BLOCK_CELLS]
+        chi = total - crossings[gap[s]]
         if cell_class < 0:
-            w[s], row[s] = tau + (ahead + CONSTANT - cell_class), DECIDED
+            required = cell_class - CONSTANT
+            floored_w[s], row[s] = tau + (chi - required), DECIDED
         else:
-            w[s], row[s] = ahead, cell_class
-    return w, row
+            floored_w[s], row[s] = chi, cell_class
+    return floored_w, row

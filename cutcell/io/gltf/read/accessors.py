@@ -110,7 +110,8 @@ def _sparse(document: Document, sparse: Any, base: NDArray, user: str) -> NDArra
     """Return elements of which a sparse accessor replaces some."""
     if not isinstance(sparse, dict):
         raise FileError(f"{user}: must be an object")
-    where, what = sparse.get("indices"), sparse.get("values")
+    where: Any = sparse.get("indices")
+    what: Any = sparse.get("values")
     for owner in (where, what):
         if not isinstance(owner, dict) or "bufferView" not in owner:
             raise FileError(f'{user}: "indices" and "values" need a "bufferView"')

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ....errors import MeshError
 from ....rig import Attachment, TriangleMesh
+from ....rig.transforms import moved
 from ....runtime.display import listed
 from ..container import Document
 from ..influences import take_influences
@@ -117,15 +118,15 @@ def _bounds(document: Document, nodes: Nodes, meshes: list[int]) -> tuple[NDArra
 
 def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
     """Return why a document that moves has no joints; an empty text if nothing moves in it."""
-    moved: set[int] = set()
+    turned: set[int] = set()
     morphed: set[int] = set()
     for clip in document.items("animations"):
         channels = clip.get("channels")
         for channel in channels if isinstance(channels, list) else ():
             if isinstance(channel, dict) and isinstance(channel.get("target"), dict):
                 node, path = target_of(channel)
-                (morphed if path == "weights" else moved).add(node if type(node) is int else -1)
-    rigid = [i for i in meshes if set(nodes.with_ancestors([i])) & moved]
+                (morphed if path == "weights" else turned).add(node if type(node) is int else -1)
+    rigid = [i for i in meshes if set(nodes.with_ancestors([i])) & turned]
     if rigid:
         names = listed([mesh_name(document, nodes, i) for i in rigid])
         return (
@@ -139,13 +140,6 @@ def _why_none(document: Document, nodes: Nodes, meshes: list[int]) -> str:
             "skeleton from another file, or fit one"
         )
     return ""
-
-
-def moved(points: NDArray, matrix: NDArray) -> NDArray:
-    """Return points (n, 3) moved by a matrix (4, 4)."""
-    if np.array_equal(matrix, np.eye(4)):
-        return points
-    return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _hanging(document: Document, nodes: Nodes, bind: Bind) -> Iterator[tuple[int, int, NDArray]]:

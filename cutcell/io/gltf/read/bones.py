@@ -21,9 +21,9 @@ from ..nodes import Nodes
 NOT_EMPTY = ("mesh", "camera", "skin", "KHR_lights_punctual", "EXT_mesh_gpu_instancing")
 MIN_CHAIN = 3
 """Nodes of a chain of bones. Two nodes are one if their tree has no others."""
-MARGIN = 0.1
+BOX_MARGIN = 0.1
 """How far bones may lie outside of the meshes' bounding box, in diagonals of it."""
-SAME_PLACE = 1e-6
+COINCIDENT_BONES = 1e-6
 """Tolerance in the same diagonals."""
 
 
@@ -102,16 +102,18 @@ def _trees(nodes: Nodes, empty: set[int], bounds: tuple[NDArray, NDArray] | None
             continue
         top = root
         while len(below := [k for k in children[top] if k in height]) == 1:
-            if np.abs(places[below[0]] - places[root]).max() > SAME_PLACE * diagonal:
+            if np.abs(places[below[0]] - places[root]).max() > COINCIDENT_BONES * diagonal:
                 break
             top = below[0]  # a group in the place of what it holds
         tree = _below(top, children, height)
         groups = [k for i in tree if i != top for k in children[i] if k in empty - height.keys()]
         tree += [k for i in groups for k in _below(i, children, empty)]
         at = places[tree]
-        if len(tree) < 2 or np.ptp(at, axis=0).max() <= SAME_PLACE * diagonal:
+        if len(tree) < 2 or np.ptp(at, axis=0).max() <= COINCIDENT_BONES * diagonal:
             continue
-        near = ((at >= low - MARGIN * diagonal) & (at <= high + MARGIN * diagonal)).all(axis=1)
+        near = ((at >= low - BOX_MARGIN * diagonal) & (at <= high + BOX_MARGIN * diagonal)).all(
+            axis=1
+        )
         if near.mean() < 0.5:
             outside.append(nodes.document.label("nodes", top))
             continue

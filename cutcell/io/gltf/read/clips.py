@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 
 from ....errors import FileError
 from ....rig.clip import Clip
+from ....rig.transforms import composed
 from ..constants import CUBICSPLINE, INTERPOLATIONS, LINEAR, STEP
 from ..container import Document
 from ..nodes import Nodes, compose, node_shifts, target_of
 from .accessors import Accessor, find_accessor, read_accessor
 
-FRAMES_A_SECOND, MAX_FRAMES = 30, 3600
+CLIP_RATE, MAX_FRAMES = 30, 3600
 """Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
-MAX_MATRICES, LEVEL = 2**22, 100
-"""Matrices in all frames, and the cost of a level of the hierarchy besides its own: a
-chain of thousands of nodes is shown by fewer frames, too."""
+MAX_MATRICES = 2**22
+"""Matrices in all frames: a chain of thousands of nodes is shown by fewer frames, too."""
 
-PATHS = ("translation", "rotation", "scale")
+CHANNEL_PATHS = ("translation", "rotation", "scale")
 
 
 def read_clips(
@@ -103,19 +103,14 @@ class Channels:
         """Return times of frames, shape (f,)."""
         if self.duration <= 0:
             return np.zeros(1)
-        cost = len(self.tree.parents) + LEVEL * len(self.tree.levels) / self._step
-        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, MAX_FRAMES, MAX_MATRICES / cost)
+        most = min(MAX_FRAMES, MAX_MATRICES / len(self.tree.parents))
+        frames = min(self.duration * CLIP_RATE + 1e-6, most)
         return np.linspace(0, self.duration, max(math.floor(frames), 1) + 1)
-
-    @property
-    def _step(self) -> int:
-        """Frames that are sampled together."""
-        return max(TOGETHER // len(self.tree.parents), 1)
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
         matrices = np.empty((len(seconds), self.joints, 4, 4))
-        step = self._step
+        step = max(TOGETHER // len(self.tree.parents), 1)
         for first in range(0, len(seconds), step):
             frames = slice(first, first + step)
             with np.errstate(over="ignore", invalid="ignore"):
@@ -148,7 +143,7 @@ def _tracks(
         sampler = samplers[at]
         if not isinstance(sampler, dict):
             raise FileError(f"{label}: its sampler {at} is not an object")
-        if node not in place or path not in PATHS:
+        if node not in place or path not in CHANNEL_PATHS:
             if path == "translation":
                 find_accessor(document, sampler.get("output"), "VEC3", label)
                 if node is not None:
@@ -183,22 +178,17 @@ def _values(
 
 
 class _Subtree:
-    """The joints and all above them, numbered parents first."""
+    """The joints and all above them."""
 
     def __init__(self, nodes: Nodes, joints: list[int], back: NDArray, inverse: NDArray) -> None:
         subtree = nodes.with_ancestors(joints)
-        depth = nodes.depth[subtree]
-        by_depth = np.argsort(depth, kind="stable")
-        order = np.array(subtree)[by_depth].tolist()
-        self.place = {node: k for k, node in enumerate(order)}
-        self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in order])
-        self.rest = {path: getattr(nodes, path)[order] for path in PATHS}
-        self.local = nodes.local[order]
-        deeper = np.flatnonzero(np.diff(depth[by_depth])) + 1
-        self.levels = np.split(np.arange(len(order)), deeper)
+        self.place = {node: k for k, node in enumerate(subtree)}
+        self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in subtree])
+        self.rest = {path: getattr(nodes, path)[subtree] for path in CHANNEL_PATHS}
+        self.local = nodes.local[subtree]
         self.joints = [self.place[node] for node in joints]
         self.back, self.inverse = back, inverse
-        self.shift = np.zeros((len(order), 3))
+        self.shift = np.zeros((len(subtree), 3))
 
     def moved(self, by: NDArray[np.float64]) -> _Subtree:
         """Return it with joints moved at rest by `by`, shape (j, 3), in the rig's space."""
@@ -224,11 +214,9 @@ class _Subtree:
             posed[track.path][:, nodes] = track.at(seconds)
             moved[nodes] = True
         world = np.tile(self.local, (count, 1, 1, 1))
-        world[:, moved] = compose(*(posed[path][:, moved] for path in PATHS))
+        world[:, moved] = compose(*(posed[path][:, moved] for path in CHANNEL_PATHS))
         world[..., :3, 3] += self.shift
-        for level in self.levels[1:]:
-            world[:, level] = world[:, self.parents[level]] @ world[:, level]
-        return world
+        return composed(world, self.parents)
 
 
 def _hermite(a: NDArray, b: NDArray, span: NDArray, u: NDArray) -> NDArray:

@@ -29,8 +29,8 @@ MAX_BYTES_PER_BYTE = {"ATTRIBUTES": 1024, "TRIANGLES": 12, "INDICES": 4}
 """Bytes that one compressed byte can hold. Attributes: 2 bits for each 4 bytes of 256 elements;
 triangles: 1 byte for each, that is 3 indices of 4 bytes."""
 DRACO = "KHR_draco_mesh_compression"
-SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 60.0
-MEMORY_A_BYTE, MIN_MEMORY = 500, 2**29
+DRACO_SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 60.0
+DRACO_MEMORY_A_BYTE, DRACO_MIN_MEMORY = 500, 2**29
 """Limits of Draco's decoder: a byte holds up to some 20 vertices of a regular grid."""
 
 
@@ -154,8 +154,8 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
         pieces.append(buffer[start : start + length])
     data = b"".join(pieces)
     job = {"data": np.frombuffer(data, np.uint8), "ends": np.cumsum([len(p) for p in pieces])}
-    seconds = MIN_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
-    memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
+    seconds = MIN_SECONDS + DRACO_SECONDS_A_MEGABYTE * len(data) / 2**20
+    memory = DRACO_MIN_MEMORY + DRACO_MEMORY_A_BYTE * len(data)
     task, who = "cutcell.isolated.draco:decode", "the Draco decoder"
     try:
         return run_isolated(task, job, seconds, who, memory)

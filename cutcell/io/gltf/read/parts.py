@@ -13,13 +13,13 @@ from ..container import Document, extensions
 from ..nodes import Nodes, target_of
 from .primitives import drawn_primitives
 
-READ = re.compile(
+READ_EXTENSIONS = re.compile(
     "KHR_(mesh_quantization|animation_pointer|node_visibility)|VRM.*|"
     "[A-Z]+_(materials?|textures?|images?|lights?)_.*"
 )
 """Extensions that are read, or change neither shapes, skins nor motion."""
-OUTSIDE = "is outside of the scene"
-NO_JOINT = "has no skin and hangs on no joint"
+OUTSIDE_SCENE = "is outside of the scene"
+UNATTACHED = "has no skin and hangs on no joint"
 
 
 def unread(document: Document) -> list[str]:
@@ -27,7 +27,9 @@ def unread(document: Document) -> list[str]:
     required = document.json.get("extensionsRequired") or ()
     paths = {str(target_of(c)[1])[:80] for a in document.items("animations") for c in a["channels"]}
     kinds = {
-        "required extensions": [str(name) for name in required if not READ.fullmatch(str(name))],
+        "required extensions": [
+            str(name) for name in required if not READ_EXTENSIONS.fullmatch(str(name))
+        ],
         "morph targets": [
             document.label("meshes", m)
             for m, mesh in enumerate(document.items("meshes"))
@@ -89,11 +91,11 @@ def left_out_meshes(
         if not draws[mesh]:
             why = "is points or lines"
         elif i not in in_scene:
-            why = OUTSIDE
+            why = OUTSIDE_SCENE
         elif vanishes(nodes, i):
             why = "is scaled to nothing"
         else:
-            why = NO_JOINT
+            why = UNATTACHED
         left_out.append(LeftOut(mesh_name(document, nodes, i), why))
     return tuple(left_out)
 
@@ -104,8 +106,8 @@ def left_out_warnings(
     """List the meshes that are seen in the file and are not bound, in sentences."""
     groups = (
         [one.name for one in attachments if not one.hidden],
-        [one.name for one in left_out if one.why == NO_JOINT],
-        [one.name for one in left_out if one.why == OUTSIDE],
+        [one.name for one in left_out if one.why == UNATTACHED],
+        [one.name for one in left_out if one.why == OUTSIDE_SCENE],
     )
     reasons = (
         "move rigidly with a joint and are only bound if they are loaded as accessories",

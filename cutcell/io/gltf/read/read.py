@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,16 +11,15 @@ from numpy.typing import NDArray
 
 from ....errors import FileError, MeshError
 from ....rig import Part, Rig, Skeleton, TriangleMesh
+from ....rig.transforms import moved
 from ...weights import NO_WEIGHTS, ReadWeights, sum_warnings, with_deform
-from ..buffer import ranges_in
 from ..constants import FLOAT, ROUNDED
-from ..container import Document, malformed
+from ..container import Document
 from ..influences import read_deform
 from ..nodes import Nodes
-from .added_skins import bind_accessories, bind_to_bones, moved, read_attachments
+from .added_skins import bind_accessories, bind_to_bones, read_attachments
 from .clips import read_clips
-from .compressed import plain_document
-from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, unread, vanishes
+from .parts import hidden_nodes, left_out_meshes, left_out_warnings, mesh_name, vanishes
 from .primitives import StoredFaces, drawn_primitives, read_triangles
 from .seams import closed_seams
 from .skins import Bind, check_unused, read_bind, read_skeleton
@@ -70,21 +68,6 @@ class BareSource:
     why_bare: str = ""  # why there are no joints, where the file lets expect some
 
 
-def read_gltf(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
-    """Load a GLB or glTF file; see `cutcell.load` and `read_rig`."""
-    with malformed():
-        document = plain_document(path)
-        if bare and not _skinned_nodes(Nodes(document)):
-            rig = read_bare(document, Nodes(document))
-        else:
-            rig = read_rig(document, accessories=accessories)
-        many = ("accessors", "animations")  # which name buffers by views
-        rest = {key: value for key, value in document.json.items() if key not in many}
-        for owner in ranges_in(rest):  # saving copies them
-            document.view_range(owner, "a buffer view")
-        return replace(rig, warnings=(*unread(document), *rig.warnings))
-
-
 def read_rig(
     document: Document,
     world: NDArray | None = None,
@@ -98,7 +81,7 @@ def read_rig(
     says why it has none.
     """
     nodes = Nodes(document)
-    skinned = _skinned_nodes(nodes)
+    skinned = skinned_nodes(nodes)
     if skinned:
         for i in skinned:
             document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
@@ -108,10 +91,10 @@ def read_rig(
         bones, why = bind_to_bones(document, nodes) if why_bare is None else (None, why_bare)
         if bones is None:
             return read_bare(document, nodes, why)
-        bind, skinned = bones, _skinned_nodes(nodes)
+        bind, skinned = bones, skinned_nodes(nodes)
     check_unused(document, bind)
     rigid = bind_accessories(document, nodes, bind) if accessories else {}
-    skinned = _skinned_nodes(nodes) if rigid else skinned
+    skinned = skinned_nodes(nodes) if rigid else skinned
     stored = _read_parts(document, nodes, skinned, bind)
     parts = stored.parts
     if not sum(len(corners) for corners in stored.faces):
@@ -176,7 +159,7 @@ def read_bare(document: Document, nodes: Nodes, why: str = "") -> Rig:
     )
 
 
-def _skinned_nodes(nodes: Nodes) -> list[int]:
+def skinned_nodes(nodes: Nodes) -> list[int]:
     """Return the nodes with a skinned mesh, those of the default scene if it has any."""
     skinned = [i for i, n in enumerate(nodes.raw) if "skin" in n and "mesh" in n]
     if not skinned and not any("mesh" in n for n in nodes.raw):

@@ -16,7 +16,7 @@ from ..read.primitives import primitives
 from ..read.read import GltfSource, StoredPart
 from .moves import file_joints
 
-SAME = 1e-12
+ROUNDED_WEIGHT = 1e-12
 """Weights may differ by it from those that loading gave: scaling to a sum of one rounds."""
 LOCAL = 0.5
 """Integers stay integers while more than this part of the rows is unchanged; floats are exact."""
@@ -79,7 +79,7 @@ def _stored_rows(
             expected[:, slot] = loaded[:, slot]
         else:  # the skin names another joint by this number now
             is_same &= loaded[:, slot] == 0
-    is_same &= np.abs(weights - expected).max(axis=1, initial=0) <= SAME
+    is_same &= np.abs(weights - expected).max(axis=1, initial=0) <= ROUNDED_WEIGHT
     if source.rescaled is not None:
         is_same &= ~source.rescaled[part.rows]
     joints, shares = (

@@ -16,9 +16,8 @@ from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...materials.gltf_colored import with_rig_looks
 from ...materials.surfaces import vertex_normals
-from ...weights import KEY
-from ..buffer import BufferWriter
-from ..builder import GltfBuilder
+from ...weights import DEFORM_KEY
+from ..buffer import BufferWriter, GltfBuilder
 from ..container import Document, extensions, with_whole_names
 from ..influences import influence_attributes, pack_influences, store_deform
 from ..nodes import Nodes, decompose
@@ -28,7 +27,7 @@ from ..read.read import BareSource, read_rig
 from ..read.skins import Bind
 from .write import packed, rewritten
 
-MAX_JOINTS = 2**16
+MAX_GLTF_JOINTS = 2**16
 MAX_SHIFT = 1e-3
 """How far rounding to 32 bits may move a point, in sizes of the mesh."""
 
@@ -41,9 +40,9 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 def check_fits(rig: Rig) -> None:
     """Refuse a rig that a new GLB cannot hold."""
-    if len(rig.skeleton.joints) > MAX_JOINTS:
+    if len(rig.skeleton.joints) > MAX_GLTF_JOINTS:
         raise SkeletonError(
-            f"glTF numbers at most {MAX_JOINTS:,} joints, and the skeleton has "
+            f"glTF numbers at most {MAX_GLTF_JOINTS:,} joints, and the skeleton has "
             f"{len(rig.skeleton.joints):,}; save it as .npz or .txt"
         )
     meshes = {"its mesh": rig.mesh}
@@ -80,7 +79,7 @@ def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
     influences = influence_attributes(pack_influences(rig.weights), count)  # type: ignore[arg-type]
     attributes |= {name: builder.buffer.store(one) for name, one in influences.items()}
     mesh = builder.add_mesh(rig.name, attributes, rig.mesh.faces)
-    binds, deform = inverses(rig.skeleton), {KEY: rig.skeleton.deform.tolist()}
+    binds, deform = inverses(rig.skeleton), {DEFORM_KEY: rig.skeleton.deform.tolist()}
     skin = builder.add_skin(list(range(count)), binds, extras=deform)
     node = builder.add_node({"name": rig.name, "mesh": mesh, "skin": skin})
     builder.json["scenes"] = [{"nodes": [count, node]}]

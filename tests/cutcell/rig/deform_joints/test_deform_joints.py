@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cutcell import Skeleton, SkeletonError, TriangleMesh, deform_joints
 from cutcell.rig.deform_joints import body
-from cutcell.rig.deform_joints.body import SPACING, Body
+from cutcell.rig.deform_joints.body import SURFACE_SPACING, Body
 from tests import meshes
 from tests.bars import grid_box
 
@@ -143,7 +143,7 @@ def test_the_body_knows_inside_from_outside(name):
     mesh = TriangleMesh(*getattr(meshes, name)())
     body = Body(mesh)
     points = body.to_unit(np.random.default_rng(0).uniform(0, 1, (300, 3)))
-    clear = points[body.to_surface(points) > 2 * SPACING]
+    clear = points[body.to_surface(points) > 2 * SURFACE_SPACING]
     exact = np.array([body.encloses(p) for p in clear])
     assert (body.inside(clear) == exact).mean() > 0.98
 
@@ -152,7 +152,7 @@ def test_large_triangles_are_sampled_all_over():
     body = Body(TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     inner = np.random.default_rng(1).dirichlet([1, 1, 1], 200)[:, :2]
     points = np.column_stack([inner, np.zeros(200)])
-    assert body.to_surface(points).max() < SPACING
+    assert body.to_surface(points).max() < SURFACE_SPACING
     assert_allclose(body.areas.sum(axis=0), [0, 0, 0.5])
 
 
@@ -307,7 +307,7 @@ def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
 def test_samples_in_blocks_are_those_of_the_whole(monkeypatch):
     mesh = TriangleMesh(*meshes.torus())
     whole = Body(mesh)
-    monkeypatch.setattr(body, "BLOCK", 4000)
+    monkeypatch.setattr(body, "PAIRS_TOGETHER", 4000)
     blocks = Body(mesh)
     assert_allclose(blocks.points, whole.points, atol=1e-12)
     points = np.random.default_rng(0).random((50, 3))
@@ -316,7 +316,7 @@ def test_samples_in_blocks_are_those_of_the_whole(monkeypatch):
 
 def test_large_triangles_in_one_place_take_bounded_memory(monkeypatch):
     """A file of a few bytes may draw its mesh any number of times."""
-    monkeypatch.setattr(body, "MAX_SAMPLES", 1_000_000)
+    monkeypatch.setattr(body, "MAX_SURFACE_SAMPLES", 1_000_000)
     corners = np.random.default_rng(0).random((6000, 3))
     mesh = TriangleMesh(corners, np.arange(6000).reshape(-1, 3))
     tracemalloc.start()
@@ -326,4 +326,4 @@ def test_large_triangles_in_one_place_take_bounded_memory(monkeypatch):
     finally:
         tracemalloc.stop()
     assert len(whole.points) > 100_000
-    assert whole.to_surface(np.full((1, 3), 0.5)) < SPACING
+    assert whole.to_surface(np.full((1, 3), 0.5)) < SURFACE_SPACING

@@ -8,20 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..animation.any_angle.theta_star import ON_BONE
-from ..bones.bones import Bones
-from ..geometry.sparse_rows import (
+from cutcell.animation.any_angle.theta_star import ON_BONE
+from cutcell.bones.bones import Bones
+from cutcell.geodesics.distances import BoneDistances, bone_distances
+from cutcell.geodesics.fallback import REACHED
+from cutcell.graph.fingerprint import APPROXIMATE
+from cutcell.method import Method
+from cutcell.rig import Skeleton
+from cutcell.rig.rows import (
     chosen_entries,
     least,
     lookup,
     rows_of_entries,
     with_columns,
 )
-from ..graph.fingerprint import APPROXIMATE
-from ..method import Method
-from ..rig import Skeleton
-from .distances import BoneDistances, bone_distances
-from .fallback import REACHED
 
 
 class MovedDistances:

@@ -5,7 +5,7 @@ import pytest
 
 from cutcell import ParameterError, TriangleMesh, build_graph, winding_number
 from cutcell.graph import INTERIOR
-from cutcell.graph.sections import slice_rays
+from cutcell_viewers.ray_slice import slice_rays
 from tests import meshes
 
 

@@ -1,4 +1,7 @@
-"""Sparse rows: for each vertex its few joints, ascending, each with a value; a zero is one, too."""
+"""Sparse rows: for each vertex its few joints, ascending, each with a weight or a distance.
+
+A distance may be zero, and is infinite where there is none.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 
-from .vectors import TIE
+from ..geometry.vectors import TIE
+
+
+def rows_of_entries(rows: csr_array) -> NDArray[np.intp]:
+    """Return the row of each entry."""
+    return np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
 
 
 def from_dense(values: NDArray[np.float64]) -> csr_array:
@@ -16,9 +24,9 @@ def from_dense(values: NDArray[np.float64]) -> csr_array:
     return csr_array((values[row, column], column, start), values.shape)
 
 
-def to_dense(rows: csr_array, absent: float = np.inf) -> NDArray[np.float64]:
-    """Return the values of rows (p, j), and another one where there are none."""
-    values = np.full(rows.shape, absent)
+def to_dense(rows: csr_array) -> NDArray[np.float64]:
+    """Return the values of rows (p, j), infinite where there are none."""
+    values = np.full(rows.shape, np.inf)
     values[rows_of_entries(rows), rows.indices] = rows.data
     return values
 
@@ -34,33 +42,15 @@ def lookup(
     return np.where(has_value, np.append(rows.data, np.inf)[entry], np.inf)
 
 
-def rows_of_entries(rows: csr_array) -> NDArray[np.intp]:
-    """Return the row of each entry."""
-    return np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
-
-
 def chosen_entries(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
     """Return rows with only some of their entries, `which` (e,)."""
     start = np.append(0, np.cumsum(which))[rows.indptr]
     return csr_array((rows.data[which], rows.indices[which], start), rows.shape)
 
 
-def scaled(rows: csr_array, factor: NDArray[np.float64]) -> csr_array:
-    """Multiply each row (p, j) by its factor (p,)."""
-    data = rows.data * np.repeat(factor, np.diff(rows.indptr))
-    return csr_array((data, rows.indices, rows.indptr), rows.shape)
-
-
 def with_columns(rows: csr_array, number: NDArray[np.integer], columns: int) -> csr_array:
     """Return rows whose columns have other numbers, ascending too, among more columns."""
     return csr_array((rows.data, number[rows.indices], rows.indptr), (rows.shape[0], columns))
-
-
-def with_rows(rows: csr_array, which: NDArray[np.integer], others: csr_array) -> csr_array:
-    """Return rows of which some, by number, are replaced by others."""
-    number = np.arange(rows.shape[0])
-    number[which] = rows.shape[0] + np.arange(len(which))
-    return csr_array(vstack([rows, others], format="csr")[number])
 
 
 def least(rows: csr_array) -> NDArray[np.float64]:
@@ -80,15 +70,29 @@ def column_of_least(rows: csr_array) -> NDArray[np.intp]:
     return column
 
 
-def single(column: NDArray[np.integer], columns: int) -> csr_array:
-    """Return rows with a one in a single column each, given by number (p,)."""
-    start = np.arange(len(column) + 1)
-    return csr_array((np.ones(len(column)), column, start), (len(column), columns))
+def scaled(rows: csr_array, factor: NDArray[np.float64]) -> csr_array:
+    """Multiply each row (n, j) by its factor (n,)."""
+    data = rows.data * np.repeat(factor, np.diff(rows.indptr))
+    return csr_array((data, rows.indices, rows.indptr), rows.shape)
 
 
-def column_of_most(rows: csr_array) -> NDArray[np.intp]:
-    """Return the column of the largest value of each row, the first of equals, 0 for none."""
-    row, column = rows_of_entries(rows), np.zeros(rows.shape[0], np.intp)
-    is_most = rows.data >= (rows.max(axis=1).toarray() * (1 - TIE))[row]
-    column[row[is_most][::-1]] = rows.indices[is_most][::-1]
-    return column
+def with_rows(rows: csr_array, which: NDArray[np.integer], others: csr_array) -> csr_array:
+    """Return rows of which some, by number, are replaced by others."""
+    number = np.arange(rows.shape[0])
+    number[which] = rows.shape[0] + np.arange(len(which))
+    return csr_array(vstack([rows, others], format="csr")[number])
+
+
+def single(joint: NDArray[np.integer], joints: int) -> csr_array:
+    """Return rows with all weight on one joint each, given by number."""
+    return csr_array((np.ones(len(joint)), joint, np.arange(len(joint) + 1)), (len(joint), joints))
+
+
+def strongest(rows: csr_array) -> NDArray[np.intp]:
+    """Return the joint with the largest weight of each row, the first of equals, 0 for none."""
+    row = rows_of_entries(rows)
+    most = rows.max(axis=1).toarray()
+    is_largest = rows.data >= most[row] * (1 - TIE)
+    joint = np.zeros(rows.shape[0], np.intp)
+    joint[row[is_largest][::-1]] = rows.indices[is_largest][::-1]  # the first one is written last
+    return joint

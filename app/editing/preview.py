@@ -6,18 +6,19 @@ from dataclasses import replace
 
 from scipy.sparse import csr_array
 
-from ..animation.falloff.adjustments import Adjustments
-from ..animation.falloff.division import Division
-from ..animation.falloff.pipeline import RigFalloff, without_tail
-from ..editing.edited import adjustments_of, joints_measured
-from ..editing.layers.contents import Computed
-from ..geodesics import BoneDistances
-from ..geodesics.moved import MovedDistances
-from ..geometry.sparse_rows import chosen_entries
-from ..method import Method
-from ..rig import Rig
-from ..weights.skinning_weights import keep_strongest, skinning_weights
-from .binding import Binding
+from cutcell.animation.falloff.adjustments import Adjustments
+from cutcell.animation.falloff.division import Division
+from cutcell.animation.falloff.pipeline import RigFalloff, subtract_floor
+from cutcell.binding.binding import Binding
+from cutcell.editing.edited import adjustments_of, joints_measured
+from cutcell.editing.layers.contents import Computed
+from cutcell.geodesics import BoneDistances
+from cutcell.method import Method
+from cutcell.rig import Rig
+from cutcell.rig.rows import chosen_entries
+from cutcell.weights.skinning_weights import keep_strongest, skinning_weights
+
+from .moved_distances import MovedDistances
 
 UNSEEN = 1e-3
 """Difference of weights whose colours differ by less than one of 256 shades."""
@@ -85,4 +86,4 @@ class _IncrementalFalloff:
         unchanged = chosen_entries(spread, ~is_changed[spread.indices])
         weights = unchanged + diffusion.equilibrium(changed)
         weights = diffusion.whole(weights, division.weights)
-        return without_tail(replace(self._falloff, division=division).with_rigid_parts(weights))
+        return subtract_floor(replace(self._falloff, division=division).with_rigid_parts(weights))

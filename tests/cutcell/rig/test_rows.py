@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from cutcell.geometry import sparse_rows
+from cutcell.rig import rows as sparse_rows
 
 
 @pytest.fixture(params=[0.0, 0.4, 1.0])
@@ -53,7 +53,7 @@ def test_weights_are_scaled_and_their_largest_found():
     random = np.random.default_rng(6)
     dense = np.rint(random.random((30, 7)) * 4) * (random.random((30, 7)) < 0.5)
     rows = csr_array(dense)
-    np.testing.assert_array_equal(sparse_rows.column_of_most(rows), dense.argmax(axis=1))
+    np.testing.assert_array_equal(sparse_rows.strongest(rows), dense.argmax(axis=1))
     factor = random.random(30)
     scaled = sparse_rows.scaled(rows, factor).toarray()
     np.testing.assert_array_equal(scaled, dense * factor[:, None])

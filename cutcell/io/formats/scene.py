@@ -1,8 +1,8 @@
-"""FBX and USD: a subprocess reads the scene, which becomes a glTF document.
+"""FBX 6.1 to 7.7, and USD with UsdSkel, as glTF documents, so that one reader does for all.
 
-A scene comes as arrays by name. Of k nodes, the root being the first: `node_names`,
-`node_parents` (-1 for none), `node_transforms` (k, 10: translation, quaternion x y z w, scale),
-`node_hidden`, `node_bones` (whether it is a joint by its own account). Of each mesh K:
+A subprocess reads the scene, which comes as arrays by name. Of k nodes, the root being the first:
+`node_names`, `node_parents` (-1 for none), `node_transforms` (k, 10: translation, quaternion x y z
+w, scale), `node_hidden`, `node_bones` (whether it is a joint by its own account). Of each mesh K:
 `mesh_names[K]`, `mesh_nodes[K]`, `mesh_K_vertices` (n, 3), `mesh_K_faces` (m, 3),
 `mesh_K_place` (4, 4) from its vertices to its node, and if it is skinned `mesh_K_joints` (j,
 nodes), `mesh_K_inverse` (j, 4, 4) and its weights as `mesh_K_rows`, `_columns` and `_values`. Of
@@ -21,19 +21,28 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FileError, MeshError
-from ..isolated.run import WorkFailedError, run_isolated
-from ..rig import Rig
-from ..runtime.display import listed
-from .files import read_bytes
-from .gltf.builder import GltfBuilder
-from .gltf.container import Document
-from .gltf.influences import influence_attributes, sorted_influences
-from .gltf.nodes import compose
-from .gltf.read.read import read_rig
-from .materials.surfaces import scene_surfaces
-from .skeletons import SkeletonFile, of_document
+from ...errors import FileError, MeshError
+from ...isolated.run import WorkFailedError, run_isolated
+from ...rig import Rig
+from ...rig.transforms import composed
+from ...runtime.display import listed
+from ..files import read_bytes
+from ..gltf.buffer import GltfBuilder
+from ..gltf.container import Document
+from ..gltf.influences import influence_attributes, sorted_influences
+from ..gltf.nodes import compose
+from ..gltf.read.read import read_rig
+from ..materials.surfaces import scene_surfaces
+from ..skeletons import SkeletonFile, of_document
 
+SUFFIXES = {
+    ".fbx": rb"Kaydara FBX|;\s*FBX",
+    ".usd": rb"PXR-USDC|#usda",
+    ".usda": rb"#usda",
+    ".usdc": rb"PXR-USDC",
+    ".usdz": rb"PK",
+}
+NOTE = "USD with cutcell[usd]"
 WEIGHTS = ("columns", "values")
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
@@ -156,9 +165,9 @@ READ = {
 }
 
 
-def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
-    """Load a file whose kind is "FBX" or "USD"; see `cutcell.load`."""
-    scene = scene_arrays(path, kind)
+def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
+    """Load an FBX or USD file; see `cutcell.load`."""
+    kind, scene = _kind(path), scene_arrays(path)
     document, world = scene_document(scene, path, f"cutcell, from {kind}")
     lost = (
         f"of {'an' if kind == 'FBX' else 'a'} {kind}, the {READ[kind]} are read, with normals, "
@@ -177,16 +186,20 @@ def read_scene(path: Path, kind: str, accessories: bool = False) -> Rig:
     return read_rig(document, world, accessories, why_bare)
 
 
-def read_scene_skeleton(path: Path, kind: str) -> SkeletonFile:
-    """Return the bones of a file whose kind is "FBX" or "USD"."""
-    scene = scene_arrays(path, kind)
+def read_skeleton(path: Path) -> SkeletonFile:
+    """Read the bones and the clips of a scene, which need not have a mesh."""
+    scene = scene_arrays(path)
     document, place = scene_document(scene, path, "cutcell", needs_mesh=False)
     return of_document(document, np.flatnonzero(scene["node_bones"]).tolist(), place)
 
 
-def scene_arrays(path: Path, kind: str) -> Mapping[str, NDArray]:
-    """Return the arrays of an FBX or USD file; see `document`."""
-    data = read_bytes(path)
+def _kind(path: Path) -> str:
+    return "FBX" if path.suffix.lower() == ".fbx" else "USD"
+
+
+def scene_arrays(path: Path) -> Mapping[str, NDArray]:
+    """Return the arrays of an FBX or USD file, as above."""
+    data, kind = read_bytes(path), _kind(path)
     job = {"path": np.array(str(path.resolve()))}
     seconds, memory, extra = USD_SECONDS, USD_MEMORY, "cutcell[usd]"
     if kind == "FBX":
@@ -216,8 +229,9 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
     the nearest bone above that it knows. In a scene without any weights each mesh that is
     below no bone, or each if all are below one, is bound to all bones in their current position.
     """
-    parents = scene["node_parents"].tolist()
-    world = _worlds(scene["node_transforms"], parents)
+    parents, transforms = scene["node_parents"].tolist(), scene["node_transforms"]
+    local = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
+    world = composed(local, scene["node_parents"])
     bones = np.flatnonzero(scene["node_bones"]).tolist()
     meshes = range(len(scene["mesh_names"]))
     skins: dict[int, SceneSkin] = {
@@ -234,9 +248,7 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
     for k, (joints, inverse) in skins.items():
         trees = {_above(joint, parents)[-1] for joint in joints}
         more = [b for b in bones if b not in assigned and _above(b, parents)[-1] in trees]
-        columns, values = (
-            scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in ("columns", "values")
-        )
+        columns, values = (scene.get(f"mesh_{k}_{key}", np.zeros(0)) for key in WEIGHTS)
         # Relative to joints that hold a vertex: the matrices of others may contradict their nodes.
         held = [j for j in np.unique(columns[values > 0]).tolist() if 0 <= j < len(joints)]
         number = {joints[j]: j for j in held or range(len(joints))}
@@ -247,14 +259,6 @@ def scene_skins(scene: Mapping[str, NDArray]) -> tuple[dict[int, SceneSkin], NDA
         skins[k] = joints, inverse
         assigned.update(more)
     return skins, stands if _inverse(stands)[1] else None
-
-
-def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
-    world = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
-    for i, parent in enumerate(parents):  # parents come before their children
-        if parent >= 0:
-            world[i] = world[parent] @ world[i]
-    return world
 
 
 def _above(node: int, parents: list[int]) -> list[int]:

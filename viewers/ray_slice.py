@@ -11,16 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...checks import check_choice, check_integer, check_number
-from ...errors import ParameterError
-from ...method import check_resolution
-from ...rig import TriangleMesh
-from ..lattice import Lattice
-from ..libraries import CASTERS, fast_winding_numbers
-from ..rays import AXES, cast_rays, part_at_contacts, points_on_rays
-from ..segments import divide_rays
-from ..surface import prepare_surface
-from ..winding.exact import WindingNumbers
+from cutcell.checks import check_choice, check_integer, check_number
+from cutcell.errors import ParameterError
+from cutcell.graph.lattice import Lattice
+from cutcell.graph.libraries import CASTERS, fast_winding_numbers
+from cutcell.graph.rays import AXES, cast_rays, part_at_contacts, points_on_rays
+from cutcell.graph.segments import divide_rays
+from cutcell.graph.surface import prepare_surface
+from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.method import check_resolution
+from cutcell.rig import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)
