@@ -1,10 +1,8 @@
-"""How long large meshes take, stage by stage, and how far their weights are from exact ones.
+"""How long large meshes take, stage by stage.
 
-python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--exact 2] [--markdown OUT]
+python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--markdown OUT]
 
-The rig's triangles are quartered again and again. Weights of many vertices come from coarser meshes
-(`cutcell/animation/falloff/diffusion.py`); the exact weights are those by factors of the whole
-matrix, from the same distances. `diagnose` checks the rig with its new weights.
+The rig's triangles are quartered again and again. `diagnose` checks the rig with its new weights.
 """
 
 from __future__ import annotations
@@ -14,13 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter, process_time
-from unittest.mock import patch
 
-import numpy as np
 import trimesh
 
 import cutcell
-from cutcell.animation.falloff import diffusion
 from cutcell_lab.benchmarks.rigs import ROOT
 from cutcell_lab.benchmarks.tables import Table, publish, seconds
 
@@ -38,39 +33,24 @@ def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
     return cutcell.Rig(cutcell.TriangleMesh(vertices, faces), rig.skeleton)
 
 
-def exact_weights(binding: cutcell.Binding) -> np.ndarray:
-    """Compute the weights, before they are pruned, by factors of the whole matrix."""
-    with patch.object(diffusion, "MIN_COARSENING", 0):
-        return unpruned(binding)
-
-
-def unpruned(binding: cutcell.Binding) -> np.ndarray:
-    """Compute the weights of all joints that distances were measured from."""
-    return cutcell.skinning_weights(binding.distances, threshold=0)
-
-
 @dataclass
 class Measured:
-    """One size: seconds by stage, processor seconds of the weights, and their difference."""
+    """One size: seconds by stage, and processor seconds of the weights."""
 
     faces: int
     seconds: dict[str, float]
     processor: float
     peak: float
     diagnosis: float
-    difference: np.ndarray | None
 
     def row(self) -> list[str]:
         """Return the cells of a table."""
         times = [*(self.seconds[name] for name in STAGES), self.processor, self.diagnosis]
-        cells = [f"{self.faces:,}", *map(seconds, times), f"{self.peak:,.0f} MB"]
-        if self.difference is None:
-            return [*cells, "-", "-"]
-        return [*cells, f"{self.difference.sum(axis=1).mean():.4f}", f"{self.difference.max():.2f}"]
+        return [f"{self.faces:,}", *map(seconds, times), f"{self.peak:,.0f} MB"]
 
 
-def measure(rig: cutcell.Rig, is_compared: bool) -> Measured:
-    """Bind and diagnose a rig; compare its weights with exact ones if wanted."""
+def measure(rig: cutcell.Rig) -> Measured:
+    """Bind and diagnose a rig."""
     binding = cutcell.bind(rig)
     begin = process_time()
     cutcell.skinning_weights(binding.distances)
@@ -78,12 +58,8 @@ def measure(rig: cutcell.Rig, is_compared: bool) -> Measured:
     begin = perf_counter()
     cutcell.diagnose(rig.with_weights(binding.weights))
     diagnosis = perf_counter() - begin
-    difference = None
-    if is_compared:
-        outcome = unpruned(binding)
-        difference = np.abs(outcome - exact_weights(binding))
     sizes = len(rig.mesh.faces), binding.seconds
-    return Measured(*sizes, processor, peak, diagnosis, difference)
+    return Measured(*sizes, processor, peak, diagnosis)
 
 
 def tables(options: argparse.Namespace) -> list[Table]:
@@ -93,21 +69,18 @@ def tables(options: argparse.Namespace) -> list[Table]:
     cutcell.diagnose(small.with_weights(cutcell.bind(small).weights))  # load what they call
     table = Table(
         "Large meshes",
-        ["faces", *STAGES, "weights, processor time", "diagnose", "peak memory of bind",
-         "mean difference", "largest"],
+        ["faces", *STAGES, "weights, processor time", "diagnose", "peak memory of bind"],
         f"`bind`, warm, R=64, {options.rig.stem}, its triangles quartered again and again. "
-        "Differences from the weights by factors of the whole matrix, before pruning: the sum over "
-        "the joints of the mean vertex, and the largest of any vertex and joint. Slope s: value ~ "
-        "faces^s over the three largest. " + circumstances(),
+        "Slope s: value ~ faces^s over the three largest. " + circumstances(),
     )  # fmt: skip
-    sizes = [measure(quartered(rig, times), times <= options.exact) for times in options.times]
+    sizes = [measure(quartered(rig, times)) for times in options.times]
     for size in sizes:
         table.add(*size.row())
     faces = [size.faces for size in sizes]
     slopes = [slope(faces, [size.seconds[name] for size in sizes]) for name in STAGES]
     slopes += [slope(faces, [getattr(size, name) for size in sizes])
                for name in ("processor", "diagnosis", "peak")]  # fmt: skip
-    table.add("**slope**", *(f"{value:.2f}" for value in slopes), "-", "-")
+    table.add("**slope**", *(f"{value:.2f}" for value in slopes))
     return [table]
 
 
@@ -117,9 +90,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--rig", type=Path, default=ROOT / "assets" / "biped.glb")
     parser.add_argument(
         "--times", type=int, nargs="+", default=[0, 1, 2, 3], help="how often to quarter"
-    )
-    parser.add_argument(
-        "--exact", type=int, default=2, help="compare with exact weights up to so many times"
     )
     parser.add_argument("--markdown", type=Path, metavar="OUT")
     return parser.parse_args(argv)

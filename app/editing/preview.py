@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from cutcell.animation.falloff.adjustments import Adjustments
@@ -17,7 +15,7 @@ from cutcell.editing.layers.contents import Computed
 from cutcell.geodesics import BoneDistances
 from cutcell.method import Method
 from cutcell.rig import Rig
-from cutcell.rig.rows import with_data
+from cutcell.rig.rows import chosen_entries
 from cutcell.weights.skinning_weights import keep_strongest, skinning_weights
 
 from .moved_distances import MovedDistances
@@ -83,11 +81,9 @@ class _IncrementalFalloff:
         before, diffusion = self._falloff.division, self._falloff.diffusion
         division = Division.by(distances, self._adjustments)
         is_changed = abs(division.weights - before.weights).max(axis=0).toarray() > UNSEEN
-        changed = _of_joints(division.weights, is_changed)
-        weights = _of_joints(self._spread, ~is_changed) + diffusion.equilibrium(changed)
+        spread, shares = self._spread, division.weights
+        changed = chosen_entries(shares, is_changed[shares.indices])
+        unchanged = chosen_entries(spread, ~is_changed[spread.indices])
+        weights = unchanged + diffusion.equilibrium(changed)
         weights = diffusion.whole(weights, division.weights)
         return subtract_floor(replace(self._falloff, division=division).with_rigid_parts(weights))
-
-
-def _of_joints(rows: csr_array, which: NDArray[np.bool_]) -> csr_array:
-    return with_data(rows, rows.data * which[rows.indices])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled, copy_to
 
-MIN_PART = 16
+MIN_PART = 8
 """Parts of up to this many vertices are not divided."""
 PENDING = 64
 """Parts that wait to be divided, at most: each is larger than all those that wait after it."""

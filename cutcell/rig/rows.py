@@ -70,13 +70,6 @@ def column_of_least(rows: csr_array) -> NDArray[np.intp]:
     return column
 
 
-def with_data(rows: csr_array, data: NDArray[np.float64]) -> csr_array:
-    """Return rows with other values of their entries (e,); zeros are left out."""
-    result = csr_array((data, rows.indices.copy(), rows.indptr.copy()), rows.shape)
-    result.eliminate_zeros()
-    return result
-
-
 def scaled(rows: csr_array, factor: NDArray[np.float64]) -> csr_array:
     """Multiply each row (n, j) by its factor (n,)."""
     data = rows.data * np.repeat(factor, np.diff(rows.indptr))

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.vectors import TIE
-from ..rig.rows import with_data
 from ..runtime.compiled import compiled
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts
@@ -36,7 +35,9 @@ def prune(
         _prune(part.start, part.stop, *rows, *options, pruned)
 
     in_threads(work, parts(weights.shape[0]), report)
-    return with_data(weights, pruned)
+    kept = np.flatnonzero(pruned)
+    start = np.searchsorted(kept, weights.indptr)
+    return csr_array((pruned[kept], weights.indices[kept], start), weights.shape)
 
 
 @compiled

@@ -16,7 +16,7 @@ from ..errors import ParameterError, WeightsError
 from ..geodesics import BoneDistances
 from ..geodesics.allowed import check_allowed
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..rig.rows import rows_of_entries, scaled, single, to_dense, with_data, with_rows
+from ..rig.rows import chosen_entries, rows_of_entries, scaled, single, to_dense, with_rows
 from ..runtime.progress import Progress, share_of, silent
 from .paper_kernel import paper_kernel
 from .prune import prune
@@ -124,8 +124,8 @@ def weight_steps(
         weights = equation_1(distances, method, allowed, adjustments)
         yield WeightStep("falloff", weights, allowed is None)
     else:
-        falloff = falloff or RigFalloff.over(distances, adjustments)
-        for name, weights in falloff.steps(report):
+        # A falloff that was not given is large, and is gone after its steps.
+        for name, weights in (falloff or RigFalloff.over(distances, adjustments)).steps(report):
             yield WeightStep(name, weights, welded=True)
     if allowed is None:
         weights = limited(weights)[graph.vertex_node]
@@ -166,7 +166,7 @@ def permit(weights: csr_array, distances: BoneDistances, allowed: NDArray[np.boo
     Shapes: weights, allowed (n, j); returns (n, j).
     """
     is_allowed = allowed[rows_of_entries(weights), weights.indices]
-    permitted = with_data(weights, weights.data * is_allowed)
+    permitted = chosen_entries(weights, is_allowed)
     lost = np.flatnonzero(permitted.sum(axis=1) == 0)
     distance = np.where(allowed[lost].T, distances.at(slice(None), lost), np.inf)
     if np.isinf(distance.min(axis=0)).any():

@@ -121,11 +121,10 @@ def test_growth_says_what_failed(capsys):
 
 
 def test_large_meshes(small, capsys):
-    large.main(["--rig", small, "--times", "0", "1", "--exact", "0"])
+    large.main(["--rig", small, "--times", "0", "1"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert [row["faces"] for row in rows] == ["112", "448", "**slope**"]
-    assert float(rows[0]["largest"]) == 0  # small meshes are solved exactly
-    assert rows[1]["largest"] == "-"
+    assert rows[0]["peak memory of bind"].endswith(" MB")
 
 
 def test_slopes():

@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 
 from ...geometry.welded import WeldedMesh
 from ...rig.rows import rows_of_entries, scaled, with_rows
+from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
 from ...runtime.threads import in_threads
 from .factors import LANES, Factors
@@ -86,22 +87,43 @@ class Diffusion:
         # Joints whose weights are near to each other share most of the work.
         count = np.bincount(joint, minlength=joints)
         place = np.bincount(joint, self.factors.blocks.position[row], joints)
-        order = np.argsort(np.where(count > 0, place / np.maximum(count, 1), np.inf), kind="stable")
+        middle = np.where(count > 0, place / np.maximum(count, 1), np.inf)
+        order = np.argsort(middle, kind="stable")
         rank = np.empty(joints, np.int32)
         rank[order] = np.arange(joints, dtype=np.int32)
         by_rank = np.argsort(rank[joint], kind="stable")
         row, rank = row[by_rank], rank[joint][by_rank]
         right = self.screening[row] * weights.data[pulling][by_rank]
 
-        def solve(first: int) -> tuple[NDArray, NDArray, NDArray]:
+        def solve(first: int) -> tuple[NDArray, ...]:
             part = slice(*np.searchsorted(rank, (first, first + LANES)))
             vertex, lane, value = self.factors.solve(
                 row[part], rank[part] - first, right[part], NEGLIGIBLE_WEIGHT
             )
-            return vertex, order[first + lane], value
+            return vertex, lane, value, order[first : first + LANES]
 
-        solved = in_threads(solve, range(0, max(np.count_nonzero(count), 1), LANES), report)
-        vertex, joint, value = (np.concatenate(x) for x in zip(*solved, strict=True))
-        equilibrium = csr_array((value, (vertex, joint)), weights.shape)
-        equilibrium.sort_indices()
-        return equilibrium
+        solved = in_threads(solve, range(0, np.count_nonzero(count), LANES), report)
+        return _as_rows(solved, weights.shape)
+
+
+def _as_rows(solved: list[tuple[NDArray, ...]], shape: tuple[int, int]) -> csr_array:
+    """Return entries as rows, and empty the list: of a large mesh they take much memory."""
+    start = np.zeros(shape[0] + 1, np.int64)
+    for vertex, *_ in solved:
+        start[1:] += np.bincount(vertex, minlength=shape[0])
+    start = np.cumsum(start)
+    column, data, end = np.empty(start[-1], np.int32), np.empty(start[-1]), start[:-1].copy()
+    while solved:
+        _write(*solved.pop(), end, column, data)
+    rows = csr_array((data, column, start), shape)
+    rows.sort_indices()
+    return rows
+
+
+@compiled
+def _write(vertex, lane, value, joints, end, column, data):
+    """Append entries to their rows, which end at `end` so far."""
+    for k in range(len(vertex)):
+        v = vertex[k]
+        column[end[v]], data[end[v]] = joints[lane[k]], value[k]
+        end[v] += 1

@@ -95,7 +95,8 @@ class Division:
 
         divide(np.full(joints, np.inf), np.arange(vertices))
         weights = csr_array((share, rows.indices, rows.indptr), rows.shape)
-        radius = _radii(weights, rows.data, surface.areas, bones, resolution)
+        few = slice(None, None, -(-vertices // MAX_MEASURED))
+        radius = _radii(weights[few], rows[few].data, surface.areas[few], bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
         is_beyond = (rows.data > radius[rows.indices]) & (share > OWN_SHARE)
@@ -165,9 +166,7 @@ def _radii(
     Shapes: weights (k, j), distance (e,) of each entry, areas (k,).
     """
     vertex, joints = rows_of_entries(weights), weights.shape[1]
-    entry = np.flatnonzero(
-        (weights.data > OWN_SHARE) & (vertex % -(-len(areas) // MAX_MEASURED) == 0)
-    )
+    entry = np.flatnonzero(weights.data > OWN_SHARE)
     vertex, joint = vertex[entry], weights.indices[entry]
     length, area = distance[entry], weights.data[entry] * (areas[vertex] + 1e-12)
     # By joint, then by length: one sort of sums takes a third of the time of two sorts.

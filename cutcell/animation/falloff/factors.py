@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.dissection import Dissection
-from ...runtime.compiled import vectorized
+from ...runtime.compiled import compiled, vectorized
 
 LANES = 8
 """Right sides that are solved for at once."""
@@ -23,8 +23,8 @@ class Factors(NamedTuple):
     at : array, shape (b + 1,), int64
         Where the values of each block begin.
     value : array
-        D on the diagonal and L' right of it: for each block's vertices the columns of the block,
-        then those of its border.
+        D on the diagonal and L' right of it: for each vertex of a block the columns from its own
+        on, first of the block, then of its border.
     """
 
     blocks: Dissection
@@ -43,7 +43,7 @@ class Factors(NamedTuple):
         No pivot is smaller than `least` times the diagonal: rounding might leave it negative.
         """
         size, border = np.diff(blocks.begin).astype(np.int64), np.diff(blocks.border_begin)
-        at = np.concatenate([[0], np.cumsum(size * (size + border))])
+        at = np.append(0, np.cumsum(size * (size + 1) // 2 + size * border))
         value, widest = np.zeros(at[-1]), int((size + border).max(initial=0))
         scratch = np.empty(len(blocks.vertex), np.int32), np.empty(widest)
         _factorise(*blocks, *rows, least, at, value, *scratch)
@@ -65,17 +65,30 @@ class Factors(NamedTuple):
         is_reached, is_negligible = np.zeros((2, blocks + 1), np.bool_)
         is_reached[np.searchsorted(self.blocks.begin, place, "right") - 1] = True
         is_negligible[-1] = True  # the parent of those without one
-        entries = *np.empty((2, count * LANES), np.int32), np.empty(count * LANES)
+        most = count * LANES  # only as much of these takes memory as is used
+        entries = np.empty(most, np.int32), np.empty(most, np.uint8), np.empty(most)
         found = _substitute(*self.blocks, self.at, self.value, x,
                             is_reached, is_negligible, negligible, *entries)  # fmt: skip
         vertex, lane, value = (array[:found].copy() for array in entries)
         return vertex, lane, value
 
 
+@compiled(inline="always")
+def _row(at, width, i):
+    """Return where the row i of a block has its column 0, which is not stored for i > 0."""
+    return at + i * width - i * (i + 1) // 2
+
+
 @vectorized
 def _subtract(target, factor, source):
     for i in range(len(target)):
         target[i] -= factor * source[i]
+
+
+@vectorized
+def _divide(target, divisor):
+    for i in range(len(target)):
+        target[i] /= divisor
 
 
 @vectorized
@@ -91,7 +104,7 @@ def _factorise(
         for k in range(border_begin[t], border_begin[t + 1]):
             local[border[k]] = high - low + k - border_begin[t]
         for i in range(high - low):
-            v, here = vertex[low + i], at[t] + i * width
+            v, here = vertex[low + i], _row(at[t], width, i)
             for e in range(start[v], start[v + 1]):
                 k = position[column[e]]
                 if k >= high:
@@ -101,13 +114,15 @@ def _factorise(
     for t in range(blocks):
         low, first, last = begin[t], border_begin[t], border_begin[t + 1]
         size, width = begin[t + 1] - low, begin[t + 1] - low + last - first
-        own = value[at[t] : at[t + 1]].reshape((size, width))
         for i in range(size):
-            own[i, i] = max(own[i, i], least * matrix[start[vertex[low + i]]])
+            here = _row(at[t], width, i)
+            own = value[here + i : here + width]
+            own[0] = max(own[0], least * matrix[start[vertex[low + i]]])
             for j in range(i + 1, size):
-                _subtract(own[j, j:], own[i, j] / own[i, i], own[i, j:])
-            for j in range(i + 1, width):
-                own[i, j] /= own[i, i]
+                other = _row(at[t], width, j)
+                part = own[j - i :]
+                _subtract(value[other + j : other + width], part[0] / own[0], part)
+            _divide(own[1:], own[0])
         # What remains of the equations of the border goes to the blocks that it lies in.
         above, k = parent[t], first
         while k < last:
@@ -127,10 +142,11 @@ def _factorise(
                 right = row[: last - k]
                 for j in range(len(right)):
                     right[j] = 0.0
-                column_of = size + k - first
                 for i in range(size):
-                    _subtract(right, own[i, column_of] * own[i, i], own[i, column_of:])
-                here = at[above] + local[k - first] * width_above
+                    here = _row(at[t], width, i)
+                    part = value[here + size + k - first : here + width]
+                    _subtract(right, part[0] * value[here + i], part)
+                here = _row(at[above], width_above, local[k - first])
                 for j in range(len(right)):
                     value[here + local[k - first + j]] += right[j]
                 k += 1
@@ -154,7 +170,7 @@ def _substitute(
         low, size, first = begin[t], begin[t + 1] - begin[t], border_begin[t]
         width = size + border_begin[t + 1] - first
         for i in range(size):
-            here = at[t] + i * width
+            here = _row(at[t], width, i)
             for j in range(i + 1, width):
                 k = low + j if j < size else border[first + j - size]
                 for c in range(LANES):
@@ -174,7 +190,7 @@ def _substitute(
             if is_negligible[t]:
                 continue
         for i in range(size - 1, -1, -1):
-            here = at[t] + i * width
+            here = _row(at[t], width, i)
             for j in range(i + 1, width):
                 k = low + j if j < size else border[first + j - size]
                 for c in range(LANES):

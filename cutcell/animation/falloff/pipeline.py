@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...geodesics import BoneDistances
-from ...rig.rows import rows_of_entries, scaled, with_data
+from ...rig.rows import least
+from ...runtime.compiled import compiled
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
 from .adjustments import Adjustments
@@ -48,8 +49,7 @@ class RigFalloff:
     def over(cls, distances: BoneDistances, adjustments: Adjustments | None = None) -> RigFalloff:
         """Divide the surface of a graph by distances; prepare its diffusion by the nearest."""
         graph = distances.graph
-        rows = distances.rows
-        depth = np.minimum.reduceat(rows.data, rows.indptr[:-1])
+        depth = least(distances.rows)
         division, diffusion = run_parallel(
             lambda: Division.by(distances, adjustments),
             lambda: Diffusion.over(graph.mesh, depth, graph.lattice.resolution),
@@ -80,7 +80,19 @@ class RigFalloff:
 
 
 def subtract_floor(weights: csr_array) -> csr_array:
-    """Subtract a part of each vertex's largest weight from all of them."""
-    tail = WEIGHT_FLOOR * weights.max(axis=1).toarray()
-    weights = with_data(weights, np.maximum(weights.data - tail[rows_of_entries(weights)], 0.0))
-    return scaled(weights, 1 / weights.sum(axis=1))
+    """Subtract a part of each vertex's largest weight from all of them, in place."""
+    _subtract_floor(weights.indptr, weights.data)
+    return weights
+
+
+@compiled
+def _subtract_floor(start, weight):
+    for v in range(len(start) - 1):
+        largest, total = 0.0, 0.0
+        for e in range(start[v], start[v + 1]):
+            largest = max(largest, weight[e])
+        for e in range(start[v], start[v + 1]):
+            weight[e] = max(weight[e] - WEIGHT_FLOOR * largest, 0.0)
+            total += weight[e]
+        for e in range(start[v], start[v + 1]):
+            weight[e] /= total

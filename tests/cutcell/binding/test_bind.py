@@ -2,6 +2,7 @@
 
 import re
 import threading
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from scipy.spatial.transform import Rotation
 
 import cutcell
 from cutcell import Cancelled, ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, bind
+from cutcell.binding.stages import bind_base
+from cutcell.editing.layers.contents import Computed
 from tests import meshes
 from tests.bars import bar, side_by_side
 
@@ -296,3 +299,17 @@ def test_few_influences_follow_the_distances_of_many(demo_paths):
         few = bind(rig, 16, method=method, max_influences=most, graph=many.graph)
         pruned = cutcell.weights.keep_strongest(many.distances, many.rows, most, 0.0)
         np.testing.assert_allclose(few.weights, pruned.toarray(), atol=1e-12)
+
+
+def test_many_joints_take_no_memory_of_matrices_of_vertices_and_joints():
+    vertices, faces = meshes.ball(5)
+    joints = np.linspace([0.2, 0.5, 0.5], [0.8, 0.5, 0.5], 400)
+    rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, np.arange(400) - 1))
+    distances = bind(rig, 16).distances
+    tracemalloc.start()
+    rows = bind_base(rig, cutcell.ANIMATION, Computed(), distances=distances).rows
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < len(vertices) * len(joints) * 8
+    assert distances.rows.nnz < 20 * len(vertices)
+    assert rows.nnz <= 4 * len(vertices)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from cutcell.rig import rows as sparse_rows
 
@@ -46,3 +47,15 @@ def test_rows_entries_and_columns_are_chosen(dense):
     expected = dense.copy()
     expected[[8, 2]] = dense[[0, 3]]
     np.testing.assert_array_equal(sparse_rows.to_dense(mixed), expected)
+
+
+def test_weights_are_scaled_and_their_largest_found():
+    random = np.random.default_rng(6)
+    dense = np.rint(random.random((30, 7)) * 4) * (random.random((30, 7)) < 0.5)
+    rows = csr_array(dense)
+    np.testing.assert_array_equal(sparse_rows.strongest(rows), dense.argmax(axis=1))
+    factor = random.random(30)
+    scaled = sparse_rows.scaled(rows, factor).toarray()
+    np.testing.assert_array_equal(scaled, dense * factor[:, None])
+    column = dense.argmax(axis=1)
+    np.testing.assert_array_equal(sparse_rows.single(column, 7).toarray(), np.eye(7)[column])
