@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,12 +147,13 @@ def inside_intervals(
         floored_w = winding_numbers.at_midpoints(segments)
         return segments.intervals(floored_w >= tau)
 
-    def keep_gaps(axis: int) -> InsideIntervals:
-        return gap_intervals(hits[axis], gaps[axis] >= tau, resolution)
-
-    gaps = [winding_numbers.in_gaps(axis) for axis in range(3)]
-    if gaps[0] is not None:
-        return in_threads(keep_gaps, range(3), report)
+    in_gaps = [w for axis in range(3) if (w := winding_numbers.in_gaps(axis)) is not None]
+    if in_gaps:
+        return in_threads(
+            lambda axis: gap_intervals(hits[axis], in_gaps[axis] >= tau, resolution),
+            range(3),
+            report,
+        )
     beyond_hits = [winding_numbers.beyond_hits(axis) for axis in range(3)]
     chunks = [
         (axis, rays)
@@ -204,7 +205,7 @@ def divide_rays(
     """
     count = int(np.diff(hits.start)[rays].sum()) + len(rays) * (resolution + 1)
     types = np.int32, np.int32, np.int32, np.bool_, np.bool_, np.float64
-    out = [np.empty(count, dtype) for dtype in types]
+    out: list[NDArray[Any]] = [np.empty(count, dtype) for dtype in types]
     count = _divide(hits.start, hits.position, resolution, rays, beyond_hits, *out)
     return Segments(axis, resolution, *(values[:count] for values in out))
 
