@@ -50,10 +50,10 @@ class Factors(NamedTuple):
         return cls(blocks, at, value)
 
     def solve(
-        self, row: NDArray[np.intp], lane: NDArray[np.intp], right: NDArray[np.float64],
+        self, row: NDArray[np.integer], number: NDArray[np.integer], right: NDArray[np.float64],
         negligible: float,
     ) -> tuple[NDArray[np.integer], NDArray[np.integer], NDArray[np.float64]]:  # fmt: skip
-        """Solve for up to `LANES` right sides with few entries: rows, lanes and values, (e,) each.
+        """Solve for up to `LANES` right sides: the row, number and value of each entry, (e,).
 
         Returns the entries of the solutions that are larger than `negligible`. A block whose
         border has none has none either, unless it has a right side (maximum principle).
@@ -61,16 +61,16 @@ class Factors(NamedTuple):
         count, blocks = len(self.blocks.vertex), len(self.blocks.parent)
         place = self.blocks.position[row]
         x = np.zeros((count, LANES))
-        x[place, lane] = right
+        x[place, number] = right
         is_reached, is_negligible = np.zeros((2, blocks + 1), np.bool_)
         is_reached[np.searchsorted(self.blocks.begin, place, "right") - 1] = True
         is_negligible[-1] = True  # the parent of those without one
         most = count * LANES  # only as much of these takes memory as is used
-        entries = np.empty(most, np.int32), np.empty(most, np.uint8), np.empty(most)
-        found = _substitute(*self.blocks, self.at, self.value, x,
-                            is_reached, is_negligible, negligible, *entries)  # fmt: skip
-        vertex, lane, value = (array[:found].copy() for array in entries)
-        return vertex, lane, value
+        vertex, lane = np.empty(most, np.int32), np.empty(most, np.uint8)
+        value = np.empty(most)
+        found = _substitute(*self.blocks, self.at, self.value, x, is_reached, is_negligible,
+                            negligible, vertex, lane, value)  # fmt: skip
+        return vertex[:found].copy(), lane[:found].copy(), value[:found].copy()
 
 
 @compiled(inline="always")
