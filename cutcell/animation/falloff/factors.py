@@ -68,9 +68,9 @@ class Factors(NamedTuple):
         most = count * LANES  # only as much of these takes memory as is used
         vertex, lane = np.empty(most, np.int32), np.empty(most, np.uint8)
         value = np.empty(most)
-        found = _substitute(*self.blocks, self.at, self.value, x, is_reached, is_negligible,
+        entries = _substitute(*self.blocks, self.at, self.value, x, is_reached, is_negligible,
                             negligible, vertex, lane, value)  # fmt: skip
-        return vertex[:found].copy(), lane[:found].copy(), value[:found].copy()
+        return vertex[:entries].copy(), lane[:entries].copy(), value[:entries].copy()
 
 
 @compiled(inline="always")
@@ -161,7 +161,7 @@ def _substitute(
 
     List the entries of the solution that are not, and return their number.
     """
-    found = 0
+    entries = 0
     blocks = len(parent)
     for t in range(blocks):
         if not is_reached[t]:
@@ -197,6 +197,6 @@ def _substitute(
                     x[low + i, c] -= value[here + j] * x[k, c]
             for c in range(LANES):
                 if x[low + i, c] > negligible:
-                    row[found], lane[found], entry[found] = vertex[low + i], c, x[low + i, c]
-                    found += 1
-    return found
+                    row[entries], lane[entries], entry[entries] = vertex[low + i], c, x[low + i, c]
+                    entries += 1
+    return entries
