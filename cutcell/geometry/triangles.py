@@ -2,8 +2,8 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+
+from ..runtime.compiled import compiled, inlined
 
 
 def normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -32,8 +32,37 @@ def face_edges(faces: NDArray) -> NDArray:
 
 
 def label_components(faces: NDArray, count: int) -> NDArray[np.int32]:
-    """Label the connected components of `count` vertices that faces or edges (m, 3 or 2) join."""
-    links = faces[:, :-1].ravel(), faces[:, 1:].ravel()
-    graph = coo_array((np.ones(len(links[0]), np.bool_), links), shape=(count, count))
-    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return labels
+    """Label the connected components of `count` vertices that faces or edges (m, 3 or 2) join.
+
+    Labels follow the order of the components' first vertices.
+    """
+    return _label_components(faces.astype(np.int64), count)
+
+
+@compiled
+def _label_components(faces, count):
+    first = np.arange(count)
+    for face in faces:
+        for k in range(1, len(face)):
+            a, b = first_of_set(first, face[k - 1]), first_of_set(first, face[k])
+            first[max(a, b)] = min(a, b)
+    label, labels = np.empty(count, np.int32), 0
+    for i in range(count):
+        if first[i] == i:
+            label[i] = labels
+            labels += 1
+        else:  # those before are labelled
+            label[i] = label[first[i]]
+    return label
+
+
+@inlined
+def first_of_set(first, i):
+    """Return the first member of the set of i (disjoint sets, Tarjan 1975).
+
+    Each entry of `first` is a member of the same set, no later; the way is halved.
+    """
+    while first[i] != i:
+        first[i] = first[first[i]]
+        i = first[i]
+    return i

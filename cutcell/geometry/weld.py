@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
+from .triangles import first_of_set
 from .vectors import between, dot
 
 WELD_TOLERANCE = 1e-6
@@ -46,7 +47,7 @@ def weld(
 
 @compiled
 def _merge(projection, points, tolerance, slack):
-    """Return each point's group's first point (disjoint sets, Tarjan 1975) and, there, middle."""
+    """Return each point's group's first point and, there, middle."""
     count = len(points)
     first = np.arange(count)
     for i in range(count):
@@ -55,7 +56,7 @@ def _merge(projection, points, tolerance, slack):
             displacement = between(points[i], points[j])
             squared = dot(displacement, displacement)
             if squared <= tolerance * tolerance:
-                a, b = _find(first, i), _find(first, j)
+                a, b = first_of_set(first, i), first_of_set(first, j)
                 first[max(a, b)] = min(a, b)
             if squared == 0:  # j lies at the same point and will meet whatever follows
                 break
@@ -67,12 +68,3 @@ def _merge(projection, points, tolerance, slack):
             low[first[i], axis] = min(low[first[i], axis], points[i, axis])
             high[first[i], axis] = max(high[first[i], axis], points[i, axis])
     return first, (low + high) / 2
-
-
-@compiled(inline="always")
-def _find(first, i):
-    """Return the first member of the set of i; each entry is of the same set, no later."""
-    while first[i] != i:
-        first[i] = first[first[i]]
-        i = first[i]
-    return i
