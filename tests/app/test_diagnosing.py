@@ -200,7 +200,7 @@ def test_the_weights_of_the_export_are_checked(spoiled, loop):
     assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
     weights = state.binding.weights.copy()
     weights[:5] = 0
-    state.binding = replace(state.binding, weights=weights)
+    state.binding = replace(state.binding, rows=csr_array(weights))
     spoiled.engine.update()
     loop.run_until(lambda: state.export_diagnosis.findings)
     look_at(spoiled, EXPORT + "unweighted-vertices")
@@ -260,7 +260,7 @@ def test_the_files_weights_are_not_offered_where_they_are(bound, loop):
     shown = {"export_diagnosis": Diagnosis(state.rig, (finding,)), "panel": "check"}
     state.param.update(**shown, finding=EXPORT + finding.code)
     assert "Take from file here" in labels(bound)
-    state.binding = replace(state.binding, weights=weights)
+    state.binding = replace(state.binding, rows=csr_array(weights))
     state.param.update(**shown, finding=EXPORT + finding.code)
     assert "Take from file here" not in labels(bound)
 
