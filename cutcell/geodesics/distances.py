@@ -279,10 +279,8 @@ def bone_distances(
         by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
         rows = with_columns(by_node, np.unique(bones.joint), joints)
     else:  # per vertex, as those at one place may differ
-        node = graph.vertex_node
-        rows, nearest_joints = allowed_distances(
-            solver, bones, sources, nearest_joints, within, allowed, progress
-        )
+        node, measure = graph.vertex_node, (solver, bones, sources, nearest_joints, within)
+        rows, nearest_joints = allowed_distances(*measure, allowed, progress)
     fallback = why_not_reached(solver, bones, sources, rows, node, allowed)
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
@@ -290,11 +288,10 @@ def bone_distances(
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
         of_joints = from_dense(least_of_joints(straight, bones).T)
         rows = with_rows(rows, lost, with_columns(of_joints, np.unique(bones.joint), joints))
-    of_vertices = None if allowed is None else rows
     if allowed is None:
-        fallback = fallback[graph.vertex_node]
+        of_vertices, fallback = None, fallback[graph.vertex_node]
     else:
-        rows = rows[np.unique(node, return_index=True)[1]]
+        of_vertices, rows = rows, rows[np.unique(node, return_index=True)[1]]
     distances = BoneDistances(
         rows, of_vertices, nearest_joints, bones, sources, fallback, solver, skeleton, allowed
     )

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bones.bones import Sources
+from ..geometry.edges import Adjacency, list_neighbours
 from ..graph import CutCellGraph
-from ..graph.neighbours import Adjacency, list_neighbours
 from ..runtime.compiled import compiled, no_refcount
 from ..runtime.progress import Progress, Shares, Tell, silent
 from ..runtime.threads import in_threads

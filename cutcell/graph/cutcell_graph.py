@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.edges import Adjacency, list_neighbours
 from ..geometry.welded import WeldedMesh
 from ..runtime.repr import Summarized
 from .fingerprint import Fingerprint
 from .interior import InteriorPoints
 from .lattice import Lattice
-from .neighbours import Adjacency, list_neighbours
 
 MESH, INTERIOR, SURFACE = 0, 1, 2
 """Kinds of nodes (mesh vertices, lattice points inside, ray hits on the surface) and of edges (of

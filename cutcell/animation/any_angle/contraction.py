@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.edges import list_neighbours
 from ...geometry.sorting import sort_by_group, spatial_order
 from ...graph import INTERIOR, SURFACE, CutCellGraph
 from ...graph.inside_edges import lattice_steps
 from ...graph.interior import OUTSIDE
-from ...graph.neighbours import list_neighbours
 from ...runtime.compiled import compiled
 
 KEPT, UNKNOWN = -1, -2
