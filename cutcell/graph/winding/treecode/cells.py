@@ -241,10 +241,10 @@ def _classify(
 
 @no_refcount
 def _fill(grid, x, y, z, size, value):
-    """Write a value into a cube of a grid."""
-    for i in range(x, x + size):
-        for j in range(y, y + size):
-            for k in range(z, z + size):
+    """Write a value into a cube of a grid, as far as it lies in the grid."""
+    for i in range(x, min(x + size, grid.shape[0])):
+        for j in range(y, min(y + size, grid.shape[1])):
+            for k in range(z, min(z + size, grid.shape[2])):
                 grid[i, j, k] = value
 
 
