@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, cast, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 
@@ -24,7 +24,10 @@ FIT_RESOLUTION = 64
 FEWEST_NODES = 8
 ENDS = 0.12
 """Share of the length at each end in which its thickness is measured."""
-STANDING: dict[str, Any] = {"biped": biped, "quadruped": quadruped}
+STANDING = {
+    "biped": (biped.place, biped.BIPED_PARENTS),
+    "quadruped": (quadruped.place, quadruped.QUADRUPED_PARENTS),
+}
 CHAINS = {
     "snake": tuple(f"spine.{n}" for n in range(1, 13)),
     "chain": tuple(f"bone.{n}" for n in range(1, 6)),
@@ -107,7 +110,8 @@ def fit_skeleton(
 
 def _placed(body: Interior, template: Template) -> tuple[Joints, dict[str, str]]:
     if template in STANDING:
-        return STANDING[template].place(body), STANDING[template].PARENTS
+        place, parents = STANDING[template]
+        return place(body), parents
     if template == "hand":
         joints = hand.place(body)
         return joints, hand.parents_of(joints)
@@ -135,5 +139,5 @@ def _thickness(body: Interior, end: int) -> float:
 def names_of(template: Template) -> list[tuple[str, ...]]:
     """Return the names that a template may give its joints: a hand may have fewer fingers."""
     if template in STANDING:
-        return [tuple(STANDING[template].PARENTS)]
+        return [tuple(STANDING[template][1])]
     return hand.names() if template == "hand" else [CHAINS[template]]
