@@ -54,10 +54,10 @@ def attempt(
     library: str, character: Character, python: str, limit: float, edge: float | None = None
 ) -> dict | str:
     """Run one mesher on one rig: seconds and number of cells, or why there are none."""
-    mesh = prepare(character.rig.mesh, 64)
+    mesh = prepare(character.rig.mesh, 64).mesh
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.npz"
-        np.savez(path, vertices=mesh.vertices, faces=mesh.faces)
+        np.savez(path, vertices=mesh.points, faces=mesh.faces)
         command = [
             os.path.abspath(python),
             str(SCRIPT),

@@ -115,7 +115,7 @@ def rays_table(characters: list[Character], options: argparse.Namespace) -> Tabl
     )
     for character, resolution in _each(characters, options):
         mesh = prepare(character.rig.mesh, resolution)
-        shape = (mesh.vertices, mesh.faces, resolution)
+        shape = (mesh.mesh.points, mesh.mesh.faces, resolution)
         ways: dict[str, Callable[[], object]] = {"cutcell": lambda p=mesh: cast(p)}
         if has_open3d():
             ways["Open3D list_intersections"] = lambda s=shape: [
@@ -139,10 +139,10 @@ def winding_table(characters: list[Character], options: argparse.Namespace) -> T
     for character, resolution in _each(characters, options):
         mesh = prepare(character.rig.mesh, resolution)
         crossings = cast(mesh)
-        points, faces = midpoints(mesh, crossings), mesh.faces.astype(np.int64)
+        points, faces = midpoints(mesh, crossings), mesh.mesh.faces.astype(np.int64)
         ways: dict[str, Callable[[], object]] = {
             "cutcell": lambda p=mesh, c=crossings: decide(p, c),
-            "libigl fast winding number": lambda v=mesh.vertices, f=faces, q=points: (
+            "libigl fast winding number": lambda v=mesh.mesh.points, f=faces, q=points: (
                 igl.fast_winding_number(v, f, q)
             ),
         }
