@@ -203,7 +203,8 @@ def near_table(rigs: dict[str, Rig], nears: Sequence[float], resolution: int) ->
     columns = ["near", "own, worst L1", "worst", f"own over {ALLOWED}", *DAMAGES]
     note = (
         "A joint is near a vertex within this many times the distance of the nearest joint "
-        f"({cleaning.NEAR_RATIO:g} by default). Of damaged weights the mean L1 after; rigs and wild."
+        f"({cleaning.NEAR_RATIO:g} by default). Of damaged weights the mean L1 after; rigs and "
+        "wild."
     )
     table = Table("What is near", columns, note)
     default = cleaning.NEAR_RATIO
