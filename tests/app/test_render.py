@@ -70,7 +70,7 @@ def demos_once():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cutcell.io, "load", load_once)
-        patch.setattr(cutcell.editing, "bind", bind_once)
+        patch.setattr(cutcell.binding, "bind", bind_once)
         patch.setattr(describing, "bind", bind_once)
         yield
 
