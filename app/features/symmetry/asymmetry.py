@@ -64,7 +64,7 @@ def mirror_image(rig: Rig, progress: Progress = silent) -> MirrorImage:
     if part < MIN_MIRRORED:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: only {part:.0%} of its vertices have a "
-            "mirror image on the surface"
+            "mirror image"
         )
     return MirrorImage(mirror, vertices, shares)
 
