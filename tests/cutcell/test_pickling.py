@@ -22,7 +22,7 @@ def binding(request):
     binding = bind(RIG)
     if request.param == "used":  # with all that is computed on demand
         _ = binding.stretch, binding.distances.joint, binding.distances.inside
-        _ = binding.graph.adjacency, binding.graph.winding_numbers
+        _ = binding.graph.adjacency, binding.graph.connected
         cutcell.geodesics.trace_path(binding.distances, 0, 0)
     return binding
 
