@@ -1,14 +1,15 @@
 """Reading of an address: its character, and the choices in it."""
 
-from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
+from cutcell.errors import FileError
 from cutcell_assets import DEMOS
 
 from ..server.messages import visible_text
-from .address import defaults, from_query, with_scene
-from .loading import load_demo, load_files
-from .recording import restore
+from .address import from_query, with_scene
+from .loading import open_character
+from .opening import Opening, Request
 from .session import Session
 
 GONE = (
@@ -23,23 +24,25 @@ GREETING = "pose"
 
 def watch(session: Session) -> None:
     """Go back and on to addresses of this page, as the browser's buttons say."""
-
-    def visit(message: dict[str, Any]) -> None:
-        restore(session, defaults(session.state))
-        arrive(session, str(message["query"]), lambda: None)
-        session.arrival.setdefault("step", -1)  # the entry that is left may be a step
-
-    session.view.listen("visit", visit)
+    session.view.listen("visit", lambda message: visit(session, str(message["query"])))
 
 
-def show_first_demo(session: Session, demo: str) -> None:
-    """Show the first character as it moves, in the colours of its weights."""
+def visit(session: Session, query: str) -> None:
+    """Open an address of this page, with nothing else chosen; or nothing changes."""
 
-    def chosen() -> None:
-        moves = bool(session.state.rig.clips) and not session.view.calm
-        session.state.param.update(moving=moves, playing=moves)
+    def request() -> Request:
+        source, choices, arrival, problem = _read(session, query)
+        if source == "":
+            raise FileError(problem)
+        return Request(
+            source or ("~" if session.paths else session.source),
+            fresh=True,
+            choices=choices,
+            arrival={"step": -1, **arrival},  # the entry that is left may be a step
+            message=problem,
+        )
 
-    load_demo(session, demo, chosen)
+    session.tasks.add(Opening(session, request))
 
 
 def choose(session: Session, query: str, first: str = "") -> None:
@@ -56,25 +59,38 @@ def choose(session: Session, query: str, first: str = "") -> None:
     state.param.update(**choices, demo=demo if demo in demo_ids else "")
 
 
-def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
-    """Show what an address says; `fallback` loads a character where it names none that exists."""
-    choices, arrival, problems = from_query(with_scene(query, session.state), session.state)
-    session.state.param.update(**choices)
-    session.arrival = arrival
-    rig = arrival.get("rig", "")
-    uploaded = session.uploads.take(rig[1:]) if rig.startswith("~") else None
-    demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
-    if rig and not rig.startswith("~") and not demo:
-        problems.append(f"rig={rig}"[:60])
-    if rig.startswith("~") and uploaded is None:
-        arrival["notice"] = GONE
-    elif problems:
-        arrival["notice"] = (
-            f"Unknown settings in the link were ignored: {visible_text(', '.join(problems))}."
-        )
-    if uploaded is not None:
-        load_files(session, uploaded, rig[1:])
-    elif demo:
-        load_demo(session, rig)
+def arrive(session: Session, query: str, first: Request | None = None) -> None:
+    """Open what an address says; `first` is opened where it names no character that exists."""
+    source, choices, arrival, problem = _read(session, query)
+    first = first or Request(session.source)
+    if not source:
+        request = replace(first, choices=choices, message=problem)
+        if source is None:  # what it says is about the first character
+            request = replace(request, arrival={**first.arrival, **arrival})
     else:
-        fallback()
+        request = Request(source, choices=choices, arrival=arrival, message=problem)
+    open_character(session, request)
+
+
+def _read(session: Session, query: str) -> tuple[str | None, dict[str, Any], dict[str, Any], str]:
+    """Read an address.
+
+    Returns the key of its character, None if it names none and "" if that cannot be opened; what
+    `from_query` returns of it; and what is wrong with it, in a sentence.
+    """
+    state = session.state
+    choices, arrival, problems = from_query(with_scene(query, state), state)
+    rig = arrival.pop("rig", None)
+    source, problem = rig, ""
+    if rig and rig.startswith("~"):
+        if not session.uploads.cache.has(rig[1:]):
+            source, problem = "", GONE
+    elif any(demo.id == rig and demo.path.exists() for demo in DEMOS):
+        source = f"demo {rig}"
+    elif rig:
+        source = ""
+        problems.append(f"rig={rig}"[:60])
+    if problems and not problem:
+        named = visible_text(", ".join(problems))
+        problem = f"Unknown settings in the link were ignored: {named}."
+    return source, choices, arrival, problem

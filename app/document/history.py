@@ -1,9 +1,9 @@
-"""History of choices."""
+"""History of documents."""
 
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-Choices = dict[str, Any]
+from .document import Document
 
 TOGETHER = 0.7
 """Changes of the same things that follow each other within this many seconds are one."""
@@ -12,81 +12,102 @@ STEPS = 200
 
 
 class History:
-    """The choices that a person can go back to; `now` is what is chosen at first."""
+    """The documents that a person can return to, across characters.
 
-    def __init__(self, now: Choices) -> None:
-        self._now = now
-        self._past: list[Choices] = []
-        self._future: list[Choices] = []
+    Only a new document drops those that were undone.
+    """
+
+    def __init__(self, first: Document | None = None) -> None:
+        self._documents = [] if first is None else [first]
+        self._place = 0
         self._last: tuple[frozenset[str], float] = (frozenset(), -1e9)
+        self.is_restoring = False
+
+    def __len__(self) -> int:
+        """Return the number of documents up to the present one."""
+        return self._place + 1
 
     @property
-    def now(self) -> Choices:
-        """The present choices."""
-        return self._now
-
-    def replace_current(self, now: Choices) -> None:
-        """Note what is chosen now in place of what was; it is no step."""
-        self._now = now
-
-    def turn(self, now: Choices, without: Collection[str]) -> None:
-        """Note another character: what was chosen is kept, without what only the old one has."""
-        self._past = [*self._past, self._now][-STEPS:]
-        self._future.clear()
-        self.drop(without)
-        self._now = now
-        self.part()
-
-    def drop(self, without: Collection[str]) -> None:
-        """Forget choices that only applied to the character that was open."""
-        for steps in (self._past, self._future):
-            steps[:] = [{k: v for k, v in one.items() if k not in without} for one in steps]
+    def now(self) -> Document | None:
+        """The present document; None before any."""
+        return self._documents[self._place] if self._documents else None
 
     @property
     def can_undo(self) -> bool:
         """Whether there is anything to go back to."""
-        return bool(self._past)
+        return self._place > 0
 
     @property
     def can_redo(self) -> bool:
         """Whether something was undone."""
-        return bool(self._future)
+        return self._place + 1 < len(self._documents)
 
-    def note(self, now: Choices, time: float) -> None:
+    @contextmanager
+    def restoring(self) -> Iterator[None]:
+        """Note no choices for a while: those of the past are restored."""
+        before, self.is_restoring = self.is_restoring, True
+        try:
+            yield
+        finally:
+            self.is_restoring = before
+
+    def peek(self, by: int) -> Document | None:
+        """Return the document some steps away, backwards if negative; None if there is none."""
+        place = self._place + by
+        return self._documents[place] if 0 <= place < len(self._documents) else None
+
+    def go(self, by: int, now: Document) -> None:
+        """Go some steps; the document there is open now as given."""
+        self._place += by
+        self._replace(now)
+        self.part()
+
+    def note(self, now: Document, time: float) -> None:
         """Note what is chosen now. Going to another panel by itself is no step."""
-        changed = frozenset(name for name in now if now[name] != self._now.get(name))
+        if self.is_restoring or self.now is None:
+            return
+        changed = now.differences(self.now)
         if not changed - {"panel"}:
-            self._now = now
+            self._replace(now)
             return
         names, when = self._last
-        if not (changed <= names and time - when < TOGETHER and self._past):
-            self._past.append(self._now)
-            del self._past[:-STEPS]
-        self._future.clear()
-        self._now, self._last = now, (changed, time)
+        if changed <= names and time - when < TOGETHER and self.can_undo:
+            del self._documents[self._place + 1 :]
+            self._replace(now)
+        else:
+            self._append(now)
+        self._last = (changed, time)
+
+    def open(self, now: Document) -> None:
+        """Note a character that was opened; without keys of both, nobody can go back."""
+        if self.now is None or not self.now.source or not now.source:
+            self._documents, self._place = [now], 0
+        else:
+            self._append(now)
+            self._replace(now)
+        self.part()
+
+    def replace_current(self, now: Document) -> None:
+        """Replace the present document; where it is the one before again, there is no step."""
+        self._replace(now)
+        before = self.peek(-1)
+        if before is not None and not now.differences(before):
+            del self._documents[self._place]
+            self._place -= 1
 
     def part(self) -> None:
         """Make the next change a separate step, however soon it follows."""
         self._last = (frozenset(), -1e9)
 
-    def withdraw(self, now: Choices) -> None:
-        """Take a choice back that could not be: what is chosen now was so before it."""
-        self._now = now
-        if self._past and self._past[-1] == now:
-            self._past.pop()
+    def _append(self, now: Document) -> None:
+        self._documents = [*self._documents[: self._place + 1], now][-STEPS - 1 :]
+        self._place = len(self._documents) - 1
 
-    def undo(self) -> Choices | None:
-        """Return what was chosen before, and make it what is chosen now."""
-        return self._go(self._past, self._future)
-
-    def redo(self) -> Choices | None:
-        """Return what was undone last, and make it what is chosen now."""
-        return self._go(self._future, self._past)
-
-    def _go(self, source: list[Choices], other: list[Choices]) -> Choices | None:
-        if not source:
-            return None
-        other.append(self._now)
-        self._now = source.pop()
-        self.part()
-        return self._now
+    def _replace(self, now: Document) -> None:
+        """Replace the present document; put those of other characters away."""
+        if self._documents[self._place].own is not now.own:
+            self._documents = [
+                one if one.own is None or one.own is now.own else one.put_away()
+                for one in self._documents
+            ]
+        self._documents[self._place] = now

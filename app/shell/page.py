@@ -3,6 +3,7 @@
 import functools
 import weakref
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -17,7 +18,7 @@ from cutcell_viewers.description import Actor
 
 from ..derive.jobs import Gate, on_its_thread
 from ..document import arrival
-from ..document.loading import load_demo, load_files
+from ..document.opening import Request
 from ..document.session import Session
 from ..features.learn.lesson import Lesson
 from ..features.pairs import results as pairs
@@ -80,18 +81,12 @@ def page(
     result = layout(session, greeting=path is None and opened is None and not query)
     document.on_session_destroyed(functools.partial(_close, session))
 
-    def fallback() -> None:
-        if path is None:
-            if query or opened is not None:
-                load_demo(session, first)
-            else:
-                arrival.show_first_demo(session, first)
-        else:
-            load_files(session, [path])
-
+    request = Request("~", paths=[path]) if path is not None else Request(f"demo {first}")
+    if path is None and not query and opened is None:
+        request = replace(request, arrival={"playing": True})  # in the colours of its weights
     # Nothing is computed until the browser has opened its websocket.
     later = session.work.later
-    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, fallback)))
+    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, request)))
     return result
 
 

@@ -138,7 +138,7 @@ def test_an_address_with_other_keys_of_regions_is_a_problem(differing, text):
 def test_the_methods_that_are_compared_are_in_the_address_and_can_be_undone(session, loop):
     address = "?rig=robot&panel=compare&resolution=16&methods=now,artist,euclidean"
     pair = "&first_method=euclidean&second_method=artist"
-    arrival.arrive(session, address + pair, lambda: None)
+    arrival.arrive(session, address + pair)
     loop.run_until(lambda: session.state.rig is not None)
     state = session.state
     assert disagreeing.pair_of(state) == ("euclidean", "artist")

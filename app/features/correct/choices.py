@@ -6,7 +6,6 @@ import zlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import param
 
 from cutcell.binding import Binding
@@ -74,43 +73,6 @@ class Dragged:
     binding: Binding
 
 
-def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:
-    """Return what of a state changes with edits and the rig that they make.
-
-    Where the skeleton has other joints, nothing that was computed holds any more, and what was
-    chosen of joints follows them.
-    """
-    changed = {"edits": edits, "rig": rig}
-    if same_structure(state.rig, rig):
-        return changed_only(state, changed)
-    number = _numbers(state.rig, rig)
-    turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
-    joint = number.get(state.joint, 0)
-    return changed_only(state, {**changed, "turns": turns, "joint": joint, "moved": None})
-
-
-def same_structure(one: Rig, other: Rig) -> bool:
-    """Whether two rigs have the same joints by name, each with the same parent."""
-    a, b = one.skeleton, other.skeleton
-    return a.names == b.names and np.array_equal(a.parents, b.parents)
-
-
-def _numbers(before: Rig, after: Rig) -> dict[int, int]:
-    """Return the index after of each joint before that stays, by its index."""
-
-    def keys(rig: Rig) -> list[Any]:
-        names, origin = rig.skeleton.names, rig.origin
-        if origin is None:
-            return list(range(len(names)))
-        return [int(o) if o >= 0 else name for o, name in zip(origin, names, strict=True)]
-
-    a, b = before.skeleton, after.skeleton
-    if np.array_equal(a.parents, b.parents) and np.array_equal(a.joints, b.joints):
-        return {j: j for j in range(len(a.names))}  # some are called otherwise
-    index_of = {key: j for j, key in enumerate(keys(after))}
-    return {j: index_of[key] for j, key in enumerate(keys(before)) if key in index_of}
-
-
 def renamed(edits: Edits, name: str, new: str) -> Edits:
     """Return edits with a joint called otherwise, wherever they name it."""
 
@@ -143,16 +105,6 @@ def vertices_named(edits: Edits) -> int:
         for one in (layer.mask.vertices, getattr(layer.content, "vertices", None))
     ]
     return sum(len(one) for one in lists if one is not None)
-
-
-def changed_only(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
-    """Return what of some choices the state does not hold; param takes the same for new."""
-    large = {name: getattr(state, name) for name in ("rig", "own", "edits", "binding")}
-    return {
-        name: value
-        for name, value in choices.items()
-        if name not in large or not (value is large[name] or value == large[name])
-    }
 
 
 def to_text(edits: Edits) -> str:
