@@ -1,16 +1,30 @@
-"""Commands that open a character: a demo, files, or one of the history."""
+"""Commands that open a character: of an address, a demo, files, or one of the history."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cutcell.errors import FileError
 from cutcell.rig import Rig
+from cutcell_assets import DEMOS
 
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
+from ..server.messages import visible_text
+from .address import from_query, with_scene
 from .opening import Opening, Request, commit
 from .recording import restore
 from .session import Session
+
+GONE = (
+    "The uploaded character of this link is no longer on the server. Drop the file again to "
+    "continue."
+)
+
+
+GREETING = "pose"
+"""The panel that a page begins with whose address says nothing: there the character moves."""
 
 
 def open_character(session: Session, request: Request) -> None:
@@ -73,3 +87,77 @@ def receiver(session: Session) -> Receiver:
     made = Receiver(uploads.cache, uploads, lambda group: load_upload(session, group), session.fail)
     uploads.when_closed(made.drop)
     return made
+
+
+def watch(session: Session) -> None:
+    """Go back and on to addresses of this page, as the browser's buttons say."""
+    session.view.listen("visit", lambda message: visit(session, str(message["query"])))
+
+
+def visit(session: Session, query: str) -> None:
+    """Open an address of this page, with nothing else chosen; or nothing changes."""
+
+    def request() -> Request:
+        source, choices, arrival, problem = _read(session, query)
+        if source == "":
+            raise FileError(problem)
+        return Request(
+            source or ("~" if session.paths else session.source),
+            fresh=True,
+            choices=choices,
+            arrival={"step": -1, **arrival},  # the entry that is left may be a step
+            message=problem,
+        )
+
+    session.tasks.add(Opening(session, request))
+
+
+def choose(session: Session, query: str, first: str = "") -> None:
+    """Choose what an address says, before any character is there.
+
+    `first` is the demo that is to come where the address names none; empty for none.
+    """
+    state = session.state
+    choices, arrival, _ = from_query(with_scene(query, state), state)
+    if first and not query:
+        choices["panel"] = GREETING
+    demo = arrival.get("rig", first)
+    demo_ids = {demo.id for demo in DEMOS if demo.path.exists()}
+    state.param.update(**choices, demo=demo if demo in demo_ids else "")
+
+
+def arrive(session: Session, query: str, first: Request | None = None) -> None:
+    """Open what an address says; `first` is opened where it names no character that exists."""
+    source, choices, arrival, problem = _read(session, query)
+    first = first or Request(session.source)
+    if not source:
+        request = replace(first, choices=choices, message=problem)
+        if source is None:  # what it says is about the first character
+            request = replace(request, arrival={**first.arrival, **arrival})
+    else:
+        request = Request(source, choices=choices, arrival=arrival, message=problem)
+    open_character(session, request)
+
+
+def _read(session: Session, query: str) -> tuple[str | None, dict[str, Any], dict[str, Any], str]:
+    """Read an address.
+
+    Returns the key of its character, None if it names none and "" if that cannot be opened; what
+    `from_query` returns of it; and what is wrong with it, in a sentence.
+    """
+    state = session.state
+    choices, arrival, problems = from_query(with_scene(query, state), state)
+    rig = arrival.pop("rig", None)
+    source, problem = rig, ""
+    if rig and rig.startswith("~"):
+        if not session.uploads.cache.has(rig[1:]):
+            source, problem = "", GONE
+    elif any(demo.id == rig and demo.path.exists() for demo in DEMOS):
+        source = f"demo {rig}"
+    elif rig:
+        source = ""
+        problems.append(f"rig={rig}"[:60])
+    if problems and not problem:
+        named = visible_text(", ".join(problems))
+        problem = f"Unknown settings in the link were ignored: {named}."
+    return source, choices, arrival, problem

@@ -24,17 +24,16 @@ from cutcell_viewers.camera import Camera, framing
 
 from ..derive.jobs import READING
 from ..derive.tasks import Task
-from ..features.character import bounds_of, camera_part, first_joint
-from ..features.compare.results import carried
 from ..files.reading import demo_rig, main_file, read
 from . import recording
 from .address import camera_of, first_clip, initial
 from .document import Document, Repair, applied, put, same_structure
+from .edits import repaired_again
+from .framing import bounds_of, camera_part, first_joint
 from .look import set_camera
 from .method import chosen_by
-from .panels import PANELS
-from .repairing import repaired_again
 from .session import Session
+from .side_by_side import carried
 
 LOADING = "load"
 
@@ -235,7 +234,8 @@ def _values(
     values |= _arrived(session, rig, panel, arrival)
     if document is not None:
         values |= document.choices
-    if not (len(rig.skeleton.joints) or PANELS[values.get("panel", panel)].works_without_skeleton):
+    shown = state.panels[values.get("panel", panel)]
+    if not len(rig.skeleton.joints) and not shown.works_without_skeleton:
         values["panel"] = "graph"
     return values, texts
 
@@ -281,7 +281,7 @@ def motion(session: Session, panel: str, arrival: Mapping[str, Any]) -> dict[str
     """Return the motion that an address starts, unless the browser prefers reduced motion."""
     if not arrival.get("playing") or session.view.calm:
         return {}
-    names = ("moving", "playing") if PANELS[panel].poses else ("animating",)
+    names = ("moving", "playing") if session.state.panels[panel].poses else ("animating",)
     return dict.fromkeys(names, True)
 
 

@@ -17,21 +17,21 @@ from cutcell_assets import DEMOS
 from cutcell_viewers.description import Actor
 
 from ..derive.jobs import Gate, on_its_thread
-from ..document import arrival
+from ..document import loading
 from ..document.opening import Request
 from ..document.session import Session
+from ..features.flat.flat_scene import flat_scene
+from ..features.inspector.card import inspector
 from ..features.learn.lesson import Lesson
+from ..features.learn.lesson_card import LessonNotes, lesson_card, steps_of
+from ..features.learn.welcome import Welcome
 from ..features.pairs import results as pairs
 from ..features.pairs.choices import OpenedAudit
 from ..server.memory import collect_later, detach_from_panel
 from ..widgets import controls as ui
-from ..widgets.flat_scene import flat_scene
-from ..widgets.inspector import inspector
-from ..widgets.lesson_card import LessonNotes, lesson_card, steps_of
 from ..widgets.modules import style
-from ..widgets.welcome import Welcome
-from .begin import begin
 from .favicon import FAVICON
+from .session.begin import begin
 from .sidebar import sidebar
 from .status import STATUS_LINE, messages
 from .theme import PAGE_STYLE, THEME
@@ -74,7 +74,7 @@ def page(
     if query == "notes=":
         return notes(session)
     first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
-    arrival.choose(session, query, first)
+    loading.choose(session, query, first)
     if opened is not None and not query:
         session.state.panel = "pairs"
     view: Any = session.view
@@ -86,7 +86,7 @@ def page(
         request = replace(request, arrival={"playing": True})  # in the colours of its weights
     # Nothing is computed until the browser has opened its websocket.
     later = session.work.later
-    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, request)))
+    view.when_seen(lambda: later(lambda: loading.arrive(session, query, request)))
     return result
 
 

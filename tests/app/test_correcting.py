@@ -24,24 +24,24 @@ from cutcell import (
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import count
-from cutcell_app.document import arrival, loading, look
+from cutcell_app.document import loading, look
 from cutcell_app.document.address import from_query
 from cutcell_app.document.document import put
 from cutcell_app.document.opening import Request
 from cutcell_app.document.recording import query
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import moving
-from cutcell_app.features.correct.choices import MAX_IN_ADDRESS, from_text, to_text
-from cutcell_app.features.correct.component_controls import COMPONENTS
-from cutcell_app.features.correct.joint_controls import JOINTS
-from cutcell_app.features.correct.joints import joint_rows
-from cutcell_app.features.layers import commands as layers
-from cutcell_app.features.layers.stack import painted_vertices
+from cutcell_app.editing.compute.stack import painted_vertices
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import moving
+from cutcell_app.editing.correct.component_controls import COMPONENTS
+from cutcell_app.editing.correct.joint_controls import JOINTS
+from cutcell_app.editing.correct.joints import joint_rows
+from cutcell_app.editing.layers import commands as layers
+from cutcell_app.features.inspector.facts import vertex_facts
 from cutcell_app.features.learn import steps as lesson
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.facts import vertex_facts
-from cutcell_app.shell import keys
+from cutcell_app.files.edits_file import MAX_IN_ADDRESS, from_text, to_text
 from cutcell_app.shell.export_controls import BASE, changes_of, loss
+from cutcell_app.shell.session import keys
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree
@@ -225,7 +225,7 @@ def test_a_persons_file_opens_with_its_own_weights(session, loop, tmp_path):
     correct.choose_file(session, False)
     settled(session, loop)
     address = query(session)
-    arrival.arrive(session, f"?{address}", Request("~"))
+    loading.arrive(session, f"?{address}", Request("~"))
     loop.rest(session)
     assert (state.edits.base, query(session)) == ("computed", address)
     correct.clear(session)
@@ -312,7 +312,7 @@ def test_they_are_saved_and_opened(bound, loop, monkeypatch):
 
 def test_going_back_to_a_character_brings_its_edits(session, loop):
     session.state.resolution = 16
-    arrival.arrive(session, "?rig=robot&resolution=16")
+    loading.arrive(session, "?rig=robot&resolution=16")
     loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
     correct.correct_joint(session, 3, deform=False)
     loop.rest(session)

@@ -11,13 +11,13 @@ from cutcell.rig import TriangleMesh
 from cutcell_app.document import loading, opening
 from cutcell_app.document.document import applied
 from cutcell_app.document.recording import present, query
+from cutcell_app.editing.binding import recovery
+from cutcell_app.editing.correct import moving, templates
+from cutcell_app.editing.layers import commands as layers
 from cutcell_app.features.check.results import repair
-from cutcell_app.features.correct import moving, templates
-from cutcell_app.features.layers import commands as layers
 from cutcell_app.features.learn import steps
-from cutcell_app.features.weights import recovery
-from cutcell_app.shell import export, keys
 from cutcell_app.shell.export_code import recipe_of
+from cutcell_app.shell.session import export, keys
 from tests.app.test_bare import bare_arm
 from tests.viewers.arm import arm_rig
 

@@ -11,9 +11,8 @@ import cutcell
 from cutcell import Computed, Edits, Filled, FromFile, Layer, Locked, Mask, Painted, Smoothed
 from cutcell.editing.layers import apply_layers
 from cutcell.editing.layers.sources import RigSources
-from cutcell_app.document.document import Document
-from cutcell_app.document.history import History
-from cutcell_app.features.layers import stack
+from cutcell_app.document.document import Document, History
+from cutcell_app.editing.compute import stack
 from tests.viewers.arm import arm_rig
 
 NAMES = arm_rig().skeleton.names

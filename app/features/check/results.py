@@ -15,13 +15,13 @@ from ...derive.derived import Derived
 from ...derive.jobs import DESCRIBING
 from ...derive.tasks import Task
 from ...document.document import Repair, put
+from ...document.edits import repaired, uses_weights
+from ...document.framing import bounds_of
 from ...document.look import set_camera
 from ...document.method import GRAPH, method_of
-from ...document.repairing import repaired, uses_weights
 from ...document.session import Session
 from ...document.state import State
-from ..character import bounds_of
-from ..layers.stack import with_base
+from ...editing.compute.stack import with_base
 from .choices import EXPORT
 
 
