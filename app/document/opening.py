@@ -112,18 +112,16 @@ class Opening(Task):
         self._request = request
         is_open = request.source == session.source and not request.again
         own = request.rig or (session.state.own if is_open else None)
-        load, stage = (lambda check: own), ""
-        if own is None:
-            load, stage = self._reader(request)
-        document = request.document
-        repair = None if document is None else document.repair
-        codes = request.arrival.get("repairs", ()) if repair is None else repair.codes
-        if own is not None and (not codes or (repair is not None and repair.after is not None)):
+        reading = None if own is not None else self._reader(request)
+        codes, repair = self._repairs(request, own)
+        if own is not None and (repair is not None or not codes):
             self.finish((own, repair, ""))
             return None
-        resolution = request.choices.get("resolution", session.state.resolution)
+        document, state = request.document, session.state
+        resolution = request.choices.get("resolution", state.resolution)
 
-        def compute(progress: Progress) -> tuple[Rig, Repair | None, str]:
+        def compute(progress: Progress) -> tuple[Any, Repair | None, str]:
+            stage, load = reading or ("repairing", lambda check: own)
             progress(stage, 0.0)
             rig = load(lambda: progress(stage, 0.0))
             if not codes:
@@ -132,6 +130,19 @@ class Opening(Task):
             return rig, *repaired_again(rig, codes, edits, resolution, progress)
 
         return compute
+
+    def _repairs(
+        self, request: Request, own: Rig | None
+    ) -> tuple[tuple[tuple[str, ...], ...], Repair | None]:
+        """Return the codes of the repairs that are to be shown, and the repairs if at hand."""
+        state, document = self._session.state, request.document
+        if document is None:
+            codes = request.arrival.get("repairs", ())
+            at_hand = state.repair if own is state.own else None
+            return codes, at_hand if at_hand is not None and at_hand.codes == codes else None
+        repair = document.repair
+        codes = () if repair is None else repair.codes
+        return codes, None if repair is None or (codes and repair.after is None) else repair
 
     def finish(self, result: tuple[Rig, Repair | None, str]) -> None:
         """Open the character that was read."""
@@ -145,12 +156,12 @@ class Opening(Task):
         session.state.param.trigger("demo")
         recording.publish(session, again=True)
 
-    def _reader(self, request: Request) -> tuple[Callable[[Callable[[], object]], Rig], str]:
-        """Return what loads the character, and what it says meanwhile."""
+    def _reader(self, request: Request) -> tuple[str, Callable[[Callable[[], object]], Rig]]:
+        """Return what is told while the character is loaded, and what loads it."""
         uploads, (kind, _, demo) = self._session.uploads, request.source.partition(" ")
         if kind == "demo":
             title = next(one.title for one in DEMOS if one.id == demo)
-            return (lambda check: demo_rig(demo)), f"loading {title}"
+            return f"loading {title}", lambda check: demo_rig(demo)
         key = request.source[1:]
         paths = uploads.take(key) if key else request.paths or self._session.paths
         if paths is None:
@@ -159,7 +170,7 @@ class Opening(Task):
         self._key = key
         path = main_file(paths)
         self._name = path.name
-        return (lambda check: read(path, check)), f"loading {path.name}"
+        return f"loading {path.name}", lambda check: read(path, check)
 
 
 def commit(
