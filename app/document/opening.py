@@ -15,7 +15,6 @@ from typing import Any
 from param.parameterized import batch_call_watchers
 
 from cutcell.editing import Edits
-from cutcell.editing.stored import stored_edits
 from cutcell.errors import CutcellError, FileError, ParameterError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -28,7 +27,7 @@ from ..files.reading import demo_rig, main_file, read
 from . import recording
 from .address import camera_of, first_clip, initial
 from .document import Document, Repair, applied, put, same_structure
-from .edits import repaired_again
+from .edits import edits_in, repaired_again
 from .framing import bounds_of, camera_part, first_joint
 from .look import set_camera
 from .method import chosen_by
@@ -294,13 +293,3 @@ def motion(session: Session, panel: str, arrival: Mapping[str, Any]) -> dict[str
         return {}
     names = ("moving", "playing") if session.state.panels[panel].poses else ("animating",)
     return dict.fromkeys(names, True)
-
-
-def edits_in(rig: Rig) -> tuple[Edits, str]:
-    """Return the edits that a character's file holds, and why they are not applied, if so."""
-    try:
-        edits = stored_edits(rig) or Edits()
-        applied(rig, None, edits)
-    except CutcellError as error:
-        return Edits(), f"The layers of the file were not applied: {error}"
-    return edits, ""
