@@ -23,7 +23,7 @@ from cutcell_viewers.camera import Camera, framing
 
 from ..derive.jobs import READING
 from ..derive.tasks import Task
-from ..files.reading import demo_rig, main_file, read
+from ..files.reading import demo_rig, main_file, read, reported
 from . import recording
 from .address import camera_of, first_clip, initial
 from .document import Document, Repair, applied, put, same_structure
@@ -111,7 +111,7 @@ class Opening(Task):
         self._request = request
         is_open = request.source == session.source and not request.again
         own = request.rig or (session.state.own if is_open else None)
-        reading = None if own is not None else self._reader(request)
+        load = self._reader(request) if own is None else reported("repairing", lambda check: own)
         codes, repair = self._repairs(request, own)
         if own is not None and (repair is not None or not codes):
             self.finish((own, repair, ""))
@@ -119,10 +119,8 @@ class Opening(Task):
         document, state = request.document, session.state
         resolution = request.choices.get("resolution", state.resolution)
 
-        def compute(progress: Progress) -> tuple[Any, Repair | None, str]:
-            stage, load = reading or ("repairing", lambda check: own)
-            progress(stage, 0.0)
-            rig = load(lambda: progress(stage, 0.0))
+        def compute(progress: Progress) -> tuple[Rig, Repair | None, str]:
+            rig = load(progress)
             if not codes:
                 return rig, repair, ""
             edits = edits_in(rig)[0] if document is None else document.edits
@@ -155,12 +153,12 @@ class Opening(Task):
         session.state.param.trigger("demo")
         recording.publish(session, again=True)
 
-    def _reader(self, request: Request) -> tuple[str, Callable[[Callable[[], object]], Rig]]:
-        """Return what is told while the character is loaded, and what loads it."""
+    def _reader(self, request: Request) -> Callable[[Progress], Any]:
+        """Return what loads the character."""
         uploads, (kind, _, demo) = self._session.uploads, request.source.partition(" ")
         if kind == "demo":
             title = next(one.title for one in DEMOS if one.id == demo)
-            return f"loading {title}", lambda check: demo_rig(demo)
+            return reported(f"loading {title}", lambda check: demo_rig(demo))
         key = request.source[1:]
         paths = uploads.take(key) if key else request.paths or self._session.paths
         if paths is None:
@@ -169,7 +167,7 @@ class Opening(Task):
         self._key = key
         path = main_file(paths)
         self._name = path.name
-        return f"loading {path.name}", lambda check: read(path, check)
+        return reported(f"loading {path.name}", lambda check: read(path, check))
 
 
 def commit(
