@@ -12,7 +12,7 @@ class Curves(Clickable):
 
     plots = param.List([], doc="See `features/lab/curves.py`.")
 
-    _esm = script("curves")
+    _esm = script("tables/curves")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         curves = [curve for plot in self.plots for curve in plot["curves"]]

@@ -29,7 +29,7 @@ class FlatScene(JSComponent):
     colors = param.Dict({}, doc="What `flat_colors` returns.")
     task = param.String("", doc="See `features.learn.steps.task`.")
 
-    _esm = script("flat_scene")
+    _esm = script("flat/scene")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)

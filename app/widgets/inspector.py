@@ -20,7 +20,7 @@ class Inspector(JSComponent):
 
     facts = param.Dict(None, allow_None=True, doc="What `vertex_facts` or `node_facts` returns.")
 
-    _esm = script("inspector")
+    _esm = script("widgets/inspector")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
@@ -54,7 +54,7 @@ def inspector(session: Session) -> Inspector:
     row = Control(
         partial(Inspector, session),
         facts=_facts,
-        stylesheets=[style("inspector_place")],
+        stylesheets=[style("widgets/inspector_place")],
         # Not by other stylesheets: Panel then asks for its own at a server far away.
         css_classes=lambda state: ["beside-lesson"] if state.step >= 0 else [],
         margin=0,

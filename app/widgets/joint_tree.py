@@ -13,7 +13,7 @@ class JointTree(Clickable):
     rows = param.List([], doc="See `features.correct.joints.joint_rows`.")
     chosen = param.Integer(-1, doc="The joint that is marked; -1 for none.")
 
-    _esm = script("joint_tree")
+    _esm = script("widgets/joint_tree")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         joint = int(data["joint"])

@@ -26,9 +26,9 @@ class LessonCard(JSComponent):
     """Shows a step of the lesson, and takes the answer."""
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")
-    now = param.Dict({}, doc="What the card shows: see `frontend/lesson_card.js`.")
+    now = param.Dict({}, doc="What the card shows: see `frontend/lesson/card.js`.")
 
-    _esm = script("lesson")
+    _esm = script("lesson/lesson")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
@@ -53,7 +53,7 @@ class LessonNotes(JSComponent):
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")
 
-    _esm = script("lesson_notes")
+    _esm = script("lesson/notes")
 
 
 def lesson_card(session: Session) -> LessonCard:
@@ -62,7 +62,7 @@ def lesson_card(session: Session) -> LessonCard:
         partial(LessonCard, session),
         now=_now,
         steps=steps_of(session.state.lesson),
-        stylesheets=[style("lesson_card_place")],
+        stylesheets=[style("lesson/card_place")],
         css_classes=lambda state: ["staged"] if state.staged else [],
         margin=0,
     )

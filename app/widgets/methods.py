@@ -16,7 +16,7 @@ class Methods(Clickable):
     single = param.Boolean(False, doc="Whether one row at most is ticked, by round boxes.")
     label = param.String("Methods", doc="Name of the table for a screen reader.")
 
-    _esm = script("methods")
+    _esm = script("tables/methods")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if str(data["id"]) in {row["id"] for row in self.rows}:

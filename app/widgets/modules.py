@@ -13,10 +13,16 @@ from panel.custom import JSComponent
 FOLDER = Path(__file__).parents[1] / "frontend"
 
 
+def names(suffix: str) -> list[str]:
+    """Return the files with a suffix, as paths from the folder."""
+    return sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob(f"*{suffix}"))
+
+
 def _version() -> str:
-    """Return what is another one whenever a script or a style is."""
-    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
-    content = b"".join(path.name.encode() + path.read_bytes() for path in files)
+    """Return a hash of all scripts and styles."""
+    content = b"".join(
+        name.encode() + (FOLDER / name).read_bytes() for name in names(".js") + names(".css")
+    )
     return hashlib.sha256(content).hexdigest()[:12]
 
 
@@ -39,10 +45,9 @@ export async function render(given) {{
 
 def head() -> str:
     """Return what the page's head needs: all modules, and what runs before Panel draws anything."""
-    names = sorted(path.name for path in FOLDER.glob("*.js"))
     # A browser fetches them at once, while the page is still loading.
-    links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
-    return f'{links}<script type="module" src="{ADDRESS}/panel.js"></script>'
+    links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names(".js"))
+    return f'{links}<script type="module" src="{ADDRESS}/common/panel.js"></script>'
 
 
 def style(name: str) -> str:

@@ -163,7 +163,7 @@ def _lines() -> Iterator[str]:
     yield "}"
 
 
-DECLARATIONS = FOLDER / "messages.d.ts"
+DECLARATIONS = FOLDER / "common/messages.d.ts"
 
 if __name__ == "__main__":
     DECLARATIONS.write_text(typescript(), encoding="utf-8")

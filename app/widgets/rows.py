@@ -16,7 +16,7 @@ class Rows(Clickable):
     points = param.Boolean(False, doc="Whether the browser reports that row.")
     label = param.String("", doc="Name of the list for a screen reader.")
 
-    _esm = script("rows")
+    _esm = script("tables/rows")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         row = int(data["row"])

@@ -37,7 +37,7 @@ class SceneView(JSComponent):
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
     _rename = {"window_width": None, "dark": None}  # noqa: RUF012
-    _esm = script("view")
+    _esm = script("view/view")
 
     def __init__(self, **params: Any) -> None:
         super().__init__(**params)

@@ -18,7 +18,7 @@ class WeightsTable(Clickable):
     content = param.Dict({}, doc="The table; empty for none.")
     label = param.String("Weights", doc="Name of the table for a screen reader.")
 
-    _esm = script("weights_table")
+    _esm = script("tables/weights_table")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         self.click(data)
@@ -31,7 +31,7 @@ class Histogram(Clickable):
     chosen = param.List([], doc="First and last chosen bar; empty for none.")
     label = param.String("Histogram", doc="Name for a screen reader.")
 
-    _esm = script("histogram")
+    _esm = script("tables/histogram")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         first, last = int(data["first"]), int(data["last"])

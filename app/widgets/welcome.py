@@ -19,7 +19,7 @@ class Welcome(FileDrop):
     )
     is_taught = param.Boolean(False, doc="Whether a step of the lesson is shown.")
 
-    _esm = script("welcome")
+    _esm = script("widgets/welcome")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(receiver(session), margin=0, **params)

@@ -4,24 +4,23 @@ import ast
 import re
 
 from cutcell_app.shell.view_parts import PARTS
-from cutcell_app.widgets.modules import FOLDER
+from cutcell_app.widgets.modules import FOLDER, names
 from cutcell_app.widgets.protocol import FROM_BROWSER, FROM_WIDGETS, TO_BROWSER
 from tests.test_layers import ROOT
 
 OWN_MESSAGES = {
-    "curves", "flat_scene", "histogram", "inspector", "joint_tree", "lesson", "methods", "rows",
-    "weights_table", "welcome",
+    "flat/scene.js", "lesson/lesson.js", "tables/curves.js", "tables/histogram.js",
+    "tables/methods.js", "tables/rows.js", "tables/weights_table.js", "widgets/inspector.js",
+    "widgets/joint_tree.js", "widgets/welcome.js",
 }  # fmt: skip
 """Widgets beside the view, whose messages are theirs alone."""
 SERVER = {path: path.read_text(encoding="utf-8") for path in (ROOT / "app").rglob("*.py")}
 SCRIPTS = "\n".join(
-    path.read_text(encoding="utf-8")
-    for path in FOLDER.glob("*.js")
-    if path.stem not in OWN_MESSAGES
+    (FOLDER / name).read_text(encoding="utf-8") for name in names(".js") if name not in OWN_MESSAGES
 )
 
 
-WIDGETS = "\n".join((FOLDER / f"{name}.js").read_text(encoding="utf-8") for name in OWN_MESSAGES)
+WIDGETS = "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in OWN_MESSAGES)
 
 
 def words(pattern, text):
