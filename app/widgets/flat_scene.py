@@ -4,14 +4,14 @@ from functools import partial
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from cutcell_viewers.palette import BONE_IDLE, GHOST, INTERIOR, MARK, SOURCE, colormap, to_hex
 
 from ..document.session import Session
 from ..features.character import theme_of
 from ..features.learn.steps import answer, asks_to_act, task
-from .modules import script
+from ..messages.received import Answer, Message
+from .modules import Widget, script
 from .table import Control, draw
 
 STEPS = 16
@@ -20,7 +20,7 @@ WINDINGS = 11
 """Colours of winding numbers from 0 to 1."""
 
 
-class FlatScene(JSComponent):
+class FlatScene(Widget):
     """Draws a section of the character over the canvas; hidden without a mode."""
 
     value = param.String("", doc="One of `features.flat.choices.MODES`.")
@@ -35,9 +35,10 @@ class FlatScene(JSComponent):
         super().__init__(**params)
         self._session = session
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        if data.get("type") == "answer" and asks_to_act(self._session.state):
-            answer(self._session, data["value"])
+    def receive(self, message: Message) -> None:
+        """Take the answer to a step that asks to act in the flat scene."""
+        if isinstance(message, Answer) and asks_to_act(self._session.state):
+            answer(self._session, message.value)
 
 
 def flat_colors(state: Any) -> dict[str, Any]:

@@ -4,7 +4,6 @@ from functools import partial
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from ..document.session import Session
 from ..features.learn.lesson import Lesson
@@ -18,11 +17,12 @@ from ..features.learn.steps import (
     painted_scores,
     pressed_offers,
 )
-from .modules import script, style
+from ..messages.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
+from .modules import Widget, script, style
 from .table import Control, draw
 
 
-class LessonCard(JSComponent):
+class LessonCard(Widget):
     """Shows a step of the lesson, and takes the answer."""
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")
@@ -34,21 +34,23 @@ class LessonCard(JSComponent):
         super().__init__(**params)
         self._session = session
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        session, kind = self._session, data.get("type")
-        if kind == "step":
-            go(session, int(data["step"]))
-        elif kind == "answer":
-            answer(session, data["value"])
-        elif kind == "offer":
-            offer(session, int(data["index"]))
-        elif kind == "choose-value":
-            choose(session, str(data["name"]), data["value"])
-        elif kind == "stage":
-            session.state.staged = bool(data["on"])
+    def receive(self, message: Message) -> None:
+        """Do what a person does with the card."""
+        session = self._session
+        match message:
+            case ShowStep(step):
+                go(session, step)
+            case Answer(value):
+                answer(session, value)
+            case Offer(index):
+                offer(session, index)
+            case ChooseValue(name, value):
+                choose(session, name, value)
+            case Stage(on):
+                session.state.staged = on
 
 
-class LessonNotes(JSComponent):
+class LessonNotes(Widget):
     """Shows the speaker's notes of the step that another window of this browser shows."""
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")

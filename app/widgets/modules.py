@@ -10,6 +10,9 @@ from typing import Any
 
 from panel.custom import JSComponent
 
+from ..messages.reading import read
+from ..messages.received import Message
+
 FOLDER = Path(__file__).parents[1] / "frontend"
 
 
@@ -55,7 +58,17 @@ def style(name: str) -> str:
     return (FOLDER / f"{name}.css").read_text(encoding="utf-8")
 
 
-class Clickable(JSComponent):
+class Widget(JSComponent):
+    """A widget of the page's own, which receives the messages of its script."""
+
+    def _handle_msg(self, data: dict[str, Any]) -> None:
+        self.receive(read(data))
+
+    def receive(self, message: Message) -> None:
+        """Do what a message says; ignore those of other widgets."""
+
+
+class Clickable(Widget):
     """A widget of the page's own that is clicked, as a button is."""
 
     def __init__(self, **params: Any) -> None:

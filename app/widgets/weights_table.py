@@ -1,9 +1,8 @@
 """A table of numbers that is sorted by its headings, with cells that can be edited."""
 
-from typing import Any
-
 import param
 
+from ..messages.received import Message, PickBars
 from .modules import Clickable, script
 
 
@@ -20,8 +19,9 @@ class WeightsTable(Clickable):
 
     _esm = script("tables/weights_table")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        self.click(data)
+    def receive(self, message: Message) -> None:
+        """Report what is done with the table."""
+        self.click(message)
 
 
 class Histogram(Clickable):
@@ -33,7 +33,8 @@ class Histogram(Clickable):
 
     _esm = script("tables/histogram")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        first, last = int(data["first"]), int(data["last"])
-        if 0 <= first <= last < len(self.bars):
-            self.click((first, last))
+    def receive(self, message: Message) -> None:
+        """Report the bars that are chosen."""
+        match message:
+            case PickBars(first, last) if 0 <= first <= last < len(self.bars):
+                self.click((first, last))

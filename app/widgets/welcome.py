@@ -7,6 +7,7 @@ import param
 from ..document.loading import receiver
 from ..document.session import Session
 from ..features.learn.steps import go
+from ..messages.received import ShowStep
 from .file_drop import FileDrop
 from .modules import script
 
@@ -27,7 +28,7 @@ class Welcome(FileDrop):
         session.state.param.watch(lambda event: self.param.update(is_taught=event.new >= 0), "step")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
-        if data.get("type") == "step":
-            go(self._session, int(data["step"]))
+        if data.get("type") == ShowStep.type:
+            go(self._session, 0)
         else:
             super()._handle_msg(data)

@@ -15,7 +15,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 ROOMS = (
-    {"editing"},
+    {"editing", "messages"},
     {"derive", "server"},
     {"document", "features", "files", "widgets"},
     {"headless", "shell"},

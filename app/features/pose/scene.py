@@ -23,6 +23,7 @@ from cutcell_viewers.skin import Gap, Skin
 
 from ...derive.memo import Memo
 from ...document.state import PANELS, State
+from ...messages.sent import Motion, Rings
 from ..character import character
 from ..select.scene import isolated, selection_marks
 from ..weights.scene import weights_look, weights_seen
@@ -193,7 +194,7 @@ def chosen_clip(state: State) -> Clip:
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
 
 
-def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict[str, Any] | None:
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
     """Return a motion as a message for the view, with a limited number of numbers."""
     if clip is None or not len(times := clip.times):
         return None
@@ -207,7 +208,7 @@ def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict
     return {"times": times, "matrices": matrices.ravel()}
 
 
-def gizmo_part(state: State) -> dict[str, Any] | None:
+def gizmo_part(state: State) -> Rings | None:
     """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
     if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
         return None

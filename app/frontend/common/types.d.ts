@@ -6,12 +6,12 @@ type Orbit = import("../camera/orbit.js").Orbit
 type Renderer = import("../engine/renderer.js").Renderer
 type SceneView = import("../view/scene_view.js").SceneView
 type GL = WebGL2RenderingContext
-type Frame = Camera & {centre: number[]; tiles: number[][]}
+type Frame = Camera & {centre: [number, number]; tiles: number[][]}
 type Tell = (message: FromBrowser) => void
 
 // A widget of the page, as Panel shows it to its script.
-type Model<Message = FromBrowser | FromWidgets> = {
-  send_msg(message: Message): void
+type Model = {
+  send_msg(message: FromBrowser): void
   on(name: string, act: (message?: any) => void): void
   off?(name: string, act: (message?: any) => void): void
   [name: string]: any

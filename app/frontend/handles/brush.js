@@ -127,7 +127,7 @@ export class PaintBrush {
 
   send(done) {
     const {points, first, mode} = this.stroke
-    this.tell({type: "brush", points, first, mode, done})
+    this.tell({type: "paint", points, first, mode, done})
     this.awaited = true
     Object.assign(this.stroke, {points: [], first: false})
   }
@@ -151,7 +151,7 @@ export class PaintBrush {
 
   cancel(e) {
     if (!this.stroke || e.pointerId !== this.stroke.pointer) { return }
-    if (!this.stroke.first) { this.tell({type: "brush", cancelled: true}) }
+    if (!this.stroke.first) { this.tell({type: "paint", cancelled: true}) }
     this.stroke = null
   }
 

@@ -107,6 +107,6 @@ export class CutHandles extends DragHandle {
   }
 
   say() {
-    this.tell({type: "cut", ...this.cut})
+    this.tell({type: "move-cut", ...this.cut})
   }
 }

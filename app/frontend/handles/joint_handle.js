@@ -58,7 +58,7 @@ export class JointHandle extends DragHandle {
   }
 
   say(done) {
-    this.tell({type: "joint", joint: this.part.joint, position: this.part.at, done})
+    this.tell({type: "move-joint", joint: this.part.joint, position: this.part.at, done})
   }
 }
 

@@ -7,7 +7,7 @@ import {Stage} from "./stage.js"
 export function render({model}) {
   const {steps} = model
   const host = {
-    go: (step) => model.send_msg({type: "step", step}),
+    go: (step) => model.send_msg({type: "show-step", step}),
     answer: (value) => model.send_msg({type: "answer", value}),
     offer: (index) => model.send_msg({type: "offer", index}),
     set: (name, value) => model.send_msg({type: "choose-value", name, value}),

@@ -4,7 +4,7 @@
 const PIECE = 2 * 1024 * 1024
 
 export class Uploader {
-  /** @param {Model<FromBrowser>} model @param {Record<string, (about?: any) => void>} hears */
+  /** @param {Model} model @param {Record<string, (about?: any) => void>} hears */
   constructor(model, {started = () => {}, moved = () => {}, ended}) {
     this.model = model
     this.started = started

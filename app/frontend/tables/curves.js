@@ -48,7 +48,7 @@ function drawn({title, curves, x_ticks, y_ticks}, model) {
     make("circle", "target", point, {cx: across(x), cy: up(y), r: 11})
     make("circle", "dot", point, {cx: across(x), cy: up(y), r: chosen ? 5.5 : 4})
     const show = () => { value.textContent = `${name}: ${text}` }
-    const choose = () => model.send_msg({type: "point", id})
+    const choose = () => model.send_msg({type: "pick-point", id})
     const press = (event) => {
       if (event.key === "Enter" || event.key === " ") { event.preventDefault(); choose() }
     }

@@ -6,12 +6,12 @@ import {stylesheet} from "../common/styles.js"
 const styled = await stylesheet("tables/histogram.css")
 const LOWEST = 4  // percent of the height, of bars with anything in them
 
-/** @param {{model: Model<FromWidgets>}} widget */
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const bars = element("div", {className: "bars", role: "group"})
   let begun = null, ended = null
   const choose = (a, b) =>
-    model.send_msg({type: "bars", first: Math.min(a, b), last: Math.max(a, b)})
+    model.send_msg({type: "pick-bars", first: Math.min(a, b), last: Math.max(a, b)})
   const numberAt = (e) => {
     const {left, width} = bars.getBoundingClientRect()
     const at = Math.floor((e.clientX - left) / width * model.bars.length)

@@ -14,7 +14,7 @@ export function render({model}) {
     const head = element("thead", {}, element("tr", {}, ...columns))
     const body = element("tbody")
     for (const {id, title, values, best, note, state, chosen, fixed} of model.rows) {
-      const change = () => model.send_msg({type: "method", id, on: box.checked})
+      const change = () => model.send_msg({type: "show-method", id, on: box.checked})
       const box = element("input", {
         type: model.single ? "radio" : "checkbox", name: id, checked: chosen, disabled: fixed,
         on: {change},

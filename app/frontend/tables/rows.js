@@ -13,9 +13,9 @@ export function render({model}) {
     renew(list, ...model.rows.map(([name, note, part], row) => {
       const bar = element("i")
       bar.style.width = `${100 * part}%`
-      const click = () => model.send_msg({type: "row", row})
-      const point = () => model.points && model.send_msg({type: "row-point", row})
-      const leave = () => model.points && model.send_msg({type: "row-point", row: -1})
+      const click = () => model.send_msg({type: "pick-row", row})
+      const point = () => model.points && model.send_msg({type: "point-at-row", row})
+      const leave = () => model.points && model.send_msg({type: "point-at-row", row: -1})
       const on = {click, mouseenter: point, focus: point, mouseleave: leave, blur: leave}
       return element("li", {}, button(
         {on}, element("span", {title: name}, name), element("b", {}, note), bar))

@@ -5,7 +5,7 @@ import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("tables/weights_table.css")
 
-/** @param {{model: Model<FromWidgets>}} widget */
+/** @param {{model: Model}} widget */
 export function render({model}) {
   const table = element("table", {aria: {label: model.label}})
   const pager = element("nav", {aria: {label: "Pages of the table"}})
@@ -13,7 +13,7 @@ export function render({model}) {
     const {columns = [], rows = [], totals = [], order = [], pages = [0, 0]} = model.content
     const [sorted, down] = order
     const head = element("tr", {}, ...columns.map(([title], column) => {
-      const sort = () => model.send_msg({type: "sort", sort: column})
+      const sort = () => model.send_msg({type: "sort", column})
       const is = column === sorted
       const heading = button({name: `sort-${column}`, on: {click: sort}, title},
         title, is ? (down ? " ↓" : " ↑") : "")
@@ -22,7 +22,7 @@ export function render({model}) {
       return th
     }))
     const body = rows.map(([vertex, ...values]) => {
-      const click = () => model.send_msg({type: "row-vertex", vertex})
+      const click = () => model.send_msg({type: "pick-vertex", vertex})
       const name = button({name: `row-${vertex}`, on: {click}, title: "Show this vertex"},
         String(vertex))
       const cells = values.map((value, i) => cell(vertex, value, i + 1, columns[i + 1]))
@@ -43,7 +43,7 @@ export function render({model}) {
       const entered = Number(input.value.replace(",", "."))
       const is = input.value.trim() !== "" && entered >= 0 && entered <= 1
       if (!is || input.value === text) { input.value = text; return }
-      model.send_msg({type: "edit", vertex, column, value: entered})
+      model.send_msg({type: "edit-weight", vertex, column, value: entered})
     }
     const keydown = (e) => {
       if (e.key === "Enter") { input.blur(); e.preventDefault() }

@@ -21,7 +21,7 @@ export class Animation {
 
   // As a part of the greatest distance.
   tell() {
-    this.view.model.send_msg({type: "front", front: this.front / this.playing.end})
+    this.view.model.send_msg({type: "halt-wave", front: this.front / this.playing.end})
   }
 
   play(animation) {

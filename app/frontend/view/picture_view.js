@@ -11,7 +11,7 @@ import {tiles} from "../camera/tiles.js"
 const SHAPE = 0.75  // width over height of a character, about
 
 export class PictureView {
-  /** @param {Model<FromBrowser>} model @param {Overlay} overlay */
+  /** @param {Model} model @param {Overlay} overlay */
   constructor(model, overlay) {
     this.model = model
     this.overlay = overlay
@@ -79,7 +79,7 @@ export class PictureView {
     const {atHome: home, position, target: focal_point} = this.orbit
     const {clientWidth, clientHeight} = this.overlay.canvas
     this.model.send_msg({
-      type: "camera", home, position, focal_point,
+      type: "camera-moved", home, position, focal_point,
       aspect: clientWidth / Math.max(clientHeight, 1),
     })
   }

@@ -83,7 +83,7 @@ export class Pointer {
     const {model, renderer} = this.view
     const [x, y] = this.at ?? renderer.target
     const vertex = this.bodyAt(x, y)?.vertex
-    if (vertex !== undefined) { model.send_msg({type: "strongest", vertex}) }
+    if (vertex !== undefined) { model.send_msg({type: "pick-strongest", vertex}) }
   }
 
   hovered(e) {

@@ -29,7 +29,7 @@ export function probe(view) {
       const number = asked += 1
       return new Promise((done) => {
         view.idle = (answered) => answered === number && done(true)
-        view.model.send_msg({type: "idle?", number})
+        view.model.send_msg({type: "ask-idle", number})
       })
     },
 

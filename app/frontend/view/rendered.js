@@ -7,7 +7,7 @@ const REST = 250  // milliseconds without a change
 const MOVING_RATIO = 0.5  // pixels of a frame while the view moves, where the server draws them all
 
 export class Rendered {
-  /** @param {Overlay} overlay @param {Model<FromBrowser>} model */
+  /** @param {Overlay} overlay @param {Model} model */
   constructor(overlay, model) {
     this.overlay = overlay
     this.model = model
@@ -36,9 +36,9 @@ export class Rendered {
   /** @param {Frame} frame @param {boolean} [fine] */
   ask(frame, fine = true) {
     const {clientWidth, clientHeight} = this.overlay.canvas
-    const size = [clientWidth, clientHeight]
+    const size = /** @type {[number, number]} */ ([clientWidth, clientHeight])
     const ratio = fine ? Math.min(window.devicePixelRatio || 1, 2) : MOVING_RATIO
-    this.model.send_msg({type: "frame", count: this.count, size, ratio, fine, ...frame})
+    this.model.send_msg({type: "draw-frame", count: this.count, size, ratio, fine, ...frame})
   }
 
   async receive({count, picture}) {

@@ -26,7 +26,7 @@ import {Transport} from "./transport.js"
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
 
 export class SceneView {
-  /** @param {Model<FromBrowser>} model @param {any} vtk @param {Overlay} overlay */
+  /** @param {Model} model @param {any} vtk @param {Overlay} overlay */
   constructor(model, vtk, overlay) {
     this.model = model
     this.overlay = overlay
@@ -253,7 +253,7 @@ export class SceneView {
     const {clientWidth, clientHeight: height} = this.overlay.canvas
     const aspect = clientWidth / Math.max(height, 1)
     const {position} = this.insets
-    this.model.send_msg({type: "camera", home, position, focal_point, aspect, height})
+    this.model.send_msg({type: "camera-moved", home, position, focal_point, aspect, height})
   }
 
   remove() {

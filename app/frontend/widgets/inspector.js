@@ -17,7 +17,7 @@ function bar(color, part, className = "bar") {
 }
 
 function row(model, {joint, name, short}, bars, value, spoken) {
-  const click = () => model.send_msg({type: "bone", joint})
+  const click = () => model.send_msg({type: "pick", joint})
   const about = {className: "row", title: `Choose ${name}`, aria: {label: spoken}, on: {click}}
   return button(about, nameElement(short ?? name), span("bars", ...bars), span("value", value))
 }
@@ -48,7 +48,7 @@ function nodeCard(model, facts) {
   for (const other of neighbours) {
     const length = lengthText(other.length)
     const label = `Go to ${other.kind} node ${other.node}, ${length} away`
-    const click = () => model.send_msg({type: "node", node: other.node})
+    const click = () => model.send_msg({type: "pick-node", node: other.node})
     root.append(button({className: "row step", aria: {label}, on: {click}},
       span("name", `${FORMS[other.kind]} ${other.node}`), span("", other.kind),
       span("value", length)))
@@ -120,7 +120,7 @@ function explained(bone, first) {
 
 // What a person gives the vertex in place of what is computed; it is scaled to sum to one.
 function overruling(model, facts) {
-  const give = (weights) => model.send_msg({type: "overrule", weights})
+  const give = (weights) => model.send_msg({type: "override", weights})
   const labels = facts.offered.map(({joint, name, short, color, weight}) => {
     const input = element("input", {
       type: "number", name: joint, min: 0, max: 1, step: 0.05, required: true,
@@ -204,7 +204,7 @@ function component(model, {number, of, vertices}, asks) {
   const size = `${vertices.toLocaleString("en")} ${vertices === 1 ? "vertex" : "vertices"}`
   if (of === 1 || !asks) { return quiet(`${part} · ${size}`) }
   const title = "See this part apart, and choose how it is bound"
-  const click = () => model.send_msg({type: "part"})
+  const click = () => model.send_msg({type: "show-part"})
   return button({className: "quiet part", title, on: {click}}, `${part} · ${size}`)
 }
 

@@ -135,7 +135,7 @@ export function render({model}) {
   }
   const choose = (i) => {
     focus(forest.rows[i].joint)
-    model.send_msg({type: "choose", joint: forest.rows[i].joint})
+    model.send_msg({type: "pick", joint: forest.rows[i].joint})
   }
   const carry = (i) => {
     const {joint, carries} = forest.rows[i]

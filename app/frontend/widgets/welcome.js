@@ -13,7 +13,7 @@ const SEEN = "cutcell welcomed"
 export function render({model}) {
   if (recall(SEEN)) { return element("div") }
   const leave = () => { part.hidden = true; removeLink(); remember(SEEN, "1") }
-  const go = () => { leave(); model.send_msg({type: "step", step: 0}) }
+  const go = () => { leave(); model.send_msg({type: "show-step", step: 0}) }
   const change = () => uploader.send(input.files)
   const input = element("input", {type: "file", multiple: true, hidden: true, on: {change}})
   const uploader = new Uploader(model, {ended: leave})
