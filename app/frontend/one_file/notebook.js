@@ -1,5 +1,5 @@
-// The interactive page as a widget of a notebook (app/headless/notebook_widget.py): a frame with the page,
-// which chooses what the model chooses, and the other way round (standalone.js).
+// The interactive page as a widget of a notebook (app/headless/notebook_widget.py): a frame with
+// the page, which chooses what the model chooses, and the other way round (standalone.js).
 
 const CHOSEN = ["joint", "vertex"]
 
