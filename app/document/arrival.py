@@ -1,10 +1,10 @@
 """Reading of an address: its character, and the choices in it."""
 
 from collections.abc import Callable
-from typing import Any
 
 from cutcell_assets import DEMOS
 
+from ..messages.received import Visit
 from ..server.messages import visible_text
 from .address import defaults, from_query, with_scene
 from .loading import load_demo, load_files
@@ -24,12 +24,12 @@ GREETING = "pose"
 def watch(session: Session) -> None:
     """Go back and on to addresses of this page, as the browser's buttons say."""
 
-    def visit(message: dict[str, Any]) -> None:
+    def visit(message: Visit) -> None:
         restore(session, defaults(session.state))
-        arrive(session, str(message["query"]), lambda: None)
+        arrive(session, message.query, lambda: None)
         session.arrival.setdefault("step", -1)  # the entry that is left may be a step
 
-    session.view.listen("visit", visit)
+    session.view.listen(Visit, visit)
 
 
 def show_first_demo(session: Session, demo: str) -> None:

@@ -4,7 +4,7 @@ import logging
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar, Unpack
 
 from cutcell.editing import Edits
 from cutcell.errors import CutcellError
@@ -17,6 +17,8 @@ from ..derive.memo import Memo
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
+from ..messages.received import Message
+from ..messages.sent import ToBrowser
 from ..server.messages import error_text
 from .history import History
 from .state import State
@@ -30,6 +32,9 @@ WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
 
 
+M = TypeVar("M", bound=Message)
+
+
 class View(Protocol):
     """Interface of the 3D view for commands; see `widgets.view.SceneView`."""
 
@@ -41,13 +46,13 @@ class View(Protocol):
     time: float
     calm: bool
 
-    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+    def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
 
     def present(self, description: Description) -> None:
         """Show a scene."""
 
-    def send(self, **parts: Any) -> None:
+    def send(self, **parts: Unpack[ToBrowser]) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
 
     def last_sent(self, name: str) -> Any:
@@ -56,7 +61,7 @@ class View(Protocol):
     def offer(self, name: str, content: bytes) -> None:
         """Send a file to the browser, which saves it."""
 
-    def answer(self, **message: Any) -> None:
+    def answer(self, **message: Unpack[ToBrowser]) -> None:
         """Answer a request of the browser."""
 
 

@@ -175,9 +175,9 @@ def test_curves_have_a_point_for_each_value(bound, loop):
     assert [p["text"] for p in by_height] == [number(x) for x in sorted(p.l1 for p in measured)]
     widget = draw(bound, SWEEP).select(Curves)[0]
     assert widget.plots == [plot]
-    widget._handle_msg({"type": "point", "id": "26"})
+    widget._handle_msg({"type": "pick-point", "id": "26"})
     assert bound.state.connectivity == 26
-    widget._handle_msg({"type": "point", "id": "27"})
+    widget._handle_msg({"type": "pick-point", "id": "27"})
     assert bound.state.connectivity == 26
 
 
