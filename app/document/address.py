@@ -14,7 +14,7 @@ OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing",
                  "busy", "stage", "fraction", "message", "step", "staged", "vertex", "node", "part",
                  "layer", "animating", "joint_handle", "measuring_errors",
                  "sweeping"})  # fmt: skip
-"""Parameters of one person or moment, or with their own entry in the address, besides tools."""
+"""Parameters of one person or moment, or with an entry of their own in the address; tools, too."""
 
 NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled", "edits")
 """Choices that only apply to the open character."""
