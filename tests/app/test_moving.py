@@ -56,7 +56,7 @@ def held(bound, loop):
 
 def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     state, rig = held.state, arm_rig()
-    before, steps = state.binding.weights, len(held.history._past)
+    before, steps = state.binding.weights, len(held.history)
     bones = resolve(state).actors["bones"].points
     assert held.view.last_sent("mover")["at"] == pytest.approx([0, 0, 0])
     fields = draw(held, column(PLACE)).select(pmui.TextInput)
@@ -77,7 +77,7 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     the_same_as_bind(held, rig)
     assert not np.array_equal(resolve(state).actors["body"].colors, on_the_way)
     assert state.rig.skeleton.joints[ELBOW].tolist() == [0.4, 0.1, 0]
-    assert len(held.history._past) == steps + 1, "one step a drag"
+    assert len(held.history) == steps + 1, "one step a drag"
     keys.act(held, "undo")
     rested(held, loop)
     assert not state.edits

@@ -215,8 +215,7 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
     assert len(to_text(held)) > MAX_IN_ADDRESS
     said = from_query(painter.view.last_sent("address"), state)[1]["edits"]
     assert len(said) < MAX_IN_ADDRESS
-    painter.arrival = {"edits": said}
-    loading.show_rig(painter, arm_rig())
+    loading.show_rig(painter, arm_rig(), edits=said)
     settled(painter, loop)
     assert state.edits == held
     check_bound_as_by_core(painter, arm_rig())
@@ -254,7 +253,7 @@ def test_keys_and_switches(painter, loop):
     assert (state.weights_shown, state.weights_of, state.joint_handle) == ("bone", "ours", False)
     state.joint_handle = True
     assert not state.brush
-    assert not {"brush", "brush_radius"} & painter.history.now.keys()
+    assert not {"brush", "brush_radius"} & painter.history.now.choices.keys()
 
 
 def test_the_section_says_what_is_painted(painter, loop):

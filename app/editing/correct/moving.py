@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.edited import edited_rig
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import CutcellError, SkeletonError
 from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 
+from ...document.document import applied
 from ...document.session import Session
 from ...messages.received import MoveJoint
 from ...messages.sent import Knob
@@ -133,7 +133,7 @@ def moved(session: Session, place: ArrayLike) -> Edits:
         position = tuple(round(x, digits) for x in at.tolist())
         edited[name] = replace(before, position=None if same and not before.added else position)
     edits = replace(state.edits, joints=edited)
-    edited_rig(state.own, edits)
+    applied(state.own, state.repair, edits)
     return edits
 
 
@@ -164,7 +164,7 @@ class Hand:
         place = back[:3, :3] @ np.asarray(message.position) + back[:3, 3]
         try:
             edits = moved(session, place)
-            rig = edited_rig(state.own, edits)
+            rig = applied(state.own, state.repair, edits)
         except CutcellError as error:
             self.release()
             session.fail(error)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...document import arrival, look, recording
+from ...document import loading, look, recording
 from ...document.session import Session
 from ...document.state import UNSEEN
 from ...editing.binding import recovery
@@ -19,7 +19,7 @@ MODULES: list[Any] = [*modules("results").values()]
 
 WATCHING = (
     look, view_parts, cut, moving, brush, selections, *MODULES, rendered, recovery, export_queue,
-    recording, keys, idle, arrival, lesson,
+    recording, keys, idle, loading, lesson,
 )  # fmt: skip
 """In this order: what is seen comes before what is computed for it."""
 
