@@ -94,6 +94,22 @@ class Derived:
         setattr(state, self.name, value)
 
 
+def in_order(results: Iterable[Derived]) -> dict[str, Derived]:
+    """Return results by their names, each after those that it follows, else as they are listed."""
+    by_name = {one.name: one for one in results}
+    placed: dict[str, Derived] = {}
+
+    def place(one: Derived) -> None:
+        for name in one.after:
+            if name not in placed:
+                place(by_name[name])
+        placed[one.name] = one
+
+    for one in by_name.values():
+        place(one)
+    return placed
+
+
 def compute_wanted(state: Any, results: Iterable[Derived], progress: Progress = silent) -> None:
     """Compute all results that a state without an engine wants."""
     for one in results:

@@ -91,9 +91,3 @@ class Common(param.Parameterized):
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights
-
-
-UNSEEN = frozenset({"name", "demo", "step", "answers", "staged", "lesson", "busy", "stage",
-                    "fraction", "exporting", "message", "bound", "influences", "flat_data",
-                    "own", "tier", "rendered", "clicked_method"})  # fmt: skip
-"""Choices that the scene does not depend on."""

@@ -4,28 +4,17 @@ from typing import Any
 
 from cutcell_viewers.camera import Camera, framing
 
-from ..features.brush.choices import BRUSH
-from ..features.character import bounds_of, camera_part, theme_of, theme_part
-from ..features.scenes import resolve
+from ..features.character import bounds_of, camera_part
 from .session import Session
-from .state import UNSEEN
 
 
 def watch(session: Session) -> None:
-    """Connect the view to the state, and the state to picks in the view."""
-    state, view = session.state, session.view
-    drawn = {"brush", "brush_selection"}
-    watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
-    state.param.watch(lambda *events: show(session), watched)
-    state.param.watch(lambda *events: show_theme(session), "dark")
+    """Connect the state to picks in the view."""
+    view = session.view
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
     view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
     view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
-    state.param.watch(
-        lambda *events: pick_node(session, None),
-        ["rig", "binding", "built_graph", "easy_graph", "graph_resolution"],
-    )
-    show_theme(session)
+    session.engine.when(lambda state: state.shown_graph, lambda graph: pick_node(session, None))
 
 
 def pick_node(session: Session, node: int | None) -> None:
@@ -66,19 +55,3 @@ def set_camera(session: Session, camera: Camera | None) -> None:
     view.camera, view.at_home = camera or home, camera is None
     now = {} if camera is None else {"now": camera_part(camera)}
     view.send(camera={**camera_part(home), **now})
-
-
-def show(session: Session) -> None:
-    """Show the scene of the state; that of a large character, when it is described."""
-    state, view, memo = session.state, session.view, session.memo
-    if state.quick:
-        session.work.cancel("scene")
-        view.present(resolve(state, memo))
-    else:
-        now = state.snapshot()
-        session.work.newest("scene", lambda progress: resolve(now, memo), view.present)
-
-
-def show_theme(session: Session) -> None:
-    """Show the colours of the theme that is chosen."""
-    session.view.send(theme=theme_part(theme_of(session.state)))

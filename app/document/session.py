@@ -41,8 +41,8 @@ class View(Protocol):
     def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
 
-    def present(self, description: Description) -> None:
-        """Show a scene."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a scene, together with parts of the view that belong to it."""
 
     def send(self, **parts: Any) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
@@ -73,7 +73,6 @@ class Session:
         What a person has started, and all other work off the page's thread.
     engine : Engine
         It keeps the results up to the state.
-    memo : Memo
     history : History
     restoring : bool
         Whether choices of the past are being restored: they are not recorded again.
@@ -106,7 +105,6 @@ class Session:
         self.view = view
         self.work = Work(schedule, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)
-        self.memo = Memo()
         self.history = History({})
         self.restoring = False
         self.uploads = PageUploads(UPLOADS)
@@ -157,6 +155,11 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
+
+    @property
+    def memo(self) -> Memo:
+        """Costly steps of what is shown of the state."""
+        return self.state.memo
 
     @property
     def folder(self) -> Path:

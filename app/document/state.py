@@ -3,15 +3,17 @@
 One object a browser session, made of the choices of each feature. It knows no widget and no layout.
 """
 
+from __future__ import annotations
+
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
-import param
-
-from .common import UNSEEN, Common
+from ..derive.memo import Memo
+from ..derive.reading import ReadOnlyState
+from .common import Common
 from .panels import MODULES, PANELS
 
-__all__ = ["PANELS", "UNSEEN", "State"]
+__all__ = ["PANELS", "State"]
 
 QUICK_MESH = 60_000
 QUICK_GRAPH = 400_000
@@ -26,7 +28,17 @@ _CHOICES: Any = tuple(module.Choices for module in MODULES.values() if hasattr(m
 
 
 class State(*_CHOICES, Common):  # type: ignore[misc]
-    """State of the page."""
+    """State of the page.
+
+    Attributes
+    ----------
+    memo : Memo
+        Costly steps of what is shown of it.
+    """
+
+    def __init__(self, **values: Any) -> None:
+        super().__init__(**values)
+        self.memo = Memo()
 
     @property
     def is_panel_usable(self) -> bool:
@@ -45,13 +57,11 @@ class State(*_CHOICES, Common):  # type: ignore[misc]
         graph_size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
         return mesh_size <= QUICK_MESH and graph_size <= QUICK_GRAPH
 
-    def snapshot(self) -> Any:
-        """Return a copy of all values, for another thread."""
-        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, param.Parameterized)]
-        worked_out = {
-            name: getattr(self, name)
-            for kind in kinds
-            for name, value in vars(kind).items()
-            if isinstance(value, property)
-        }
-        return SimpleNamespace(**{**self.param.values(), **worked_out})
+    def changed(self, **changes: Any) -> State:
+        """Return the state with other values of some parameters, which can only be read."""
+        return cast(State, ReadOnlyState(State, self, changes))
+
+    def snapshot(self) -> State:
+        """Return a copy of all values for another thread, which can only be read."""
+        values = SimpleNamespace(**self.param.values(), memo=self.memo)
+        return cast(State, ReadOnlyState(State, values))

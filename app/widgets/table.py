@@ -11,7 +11,7 @@ from panel.viewable import Viewable
 
 from ..document.session import Session
 from ..document.state import State
-from .follow import Follower, Followers, Reader
+from .follow import Follower, Followers
 
 
 class Control:
@@ -26,9 +26,9 @@ class Control:
     act : callable, optional
         Called with the session and the value that a person chooses, or the event of a button.
     content : sequence or callable
-        Rows inside a group, or a function of a `Reader` that returns them.
+        Rows inside a group, or a function of the state that returns them.
     shows : callable, optional
-        Function of a `Reader` that returns several options.
+        Function of the state that returns several options.
     late : collection of str
         See `Follower`.
     watched : str
@@ -36,7 +36,7 @@ class Control:
     repeats : bool
         Whether Enter in a field chooses its text again.
     **options
-        Options of the widget. A function is called with a `Reader`, again whenever what it reads
+        Options of the widget. A function is called with the state, again whenever what it reads
         changes, and returns the option's value.
     """
 
@@ -106,7 +106,7 @@ def _connect(session: Session, widget: Any, row: Any) -> None:
     """Connect a widget to its parameter or action."""
 
     def chosen(event: Any) -> None:
-        shown = {**row.fixed, **row.shown(Reader(session))}
+        shown = {**row.fixed, **row.shown(session.state)}
         if event.new not in (None, shown["value"]):  # else nobody chose it
             row.act(session, event.new)
 

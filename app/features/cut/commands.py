@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from cutcell_viewers.graph_scene import box_across
 
 from ...document.session import Session
-from ...document.state import PANELS
+from ...document.state import PANELS, State
 from ..character import bounds_of, cut_of
 
 
@@ -17,9 +17,8 @@ def watch(session: Session) -> None:
     session.view.listen("cut", lambda message: put(session, message["origin"], message["normal"]))
 
 
-def plane_part(session: Session) -> dict[str, Any] | None:
+def plane_part(state: State) -> dict[str, Any] | None:
     """Return the box of the plane that can be dragged, or None."""
-    state = session.state
     sliced = state.panel == "graph" and state.slicing
     is_cut = PANELS[state.panel].cuts and state.cut_across != "off"
     is_shown = state.rig is not None and is_cut and not sliced

@@ -25,9 +25,8 @@ def halt_wave(session: Session, front: float | None) -> None:
     session.state.front = min(max(front or 0.0, 0.0), 1.0)
 
 
-def wave_part(session: Session) -> dict[str, float] | None:
+def wave_part(state: State) -> dict[str, float] | None:
     """Return how far and how fast the wavefront runs in the browser; None where it does not."""
-    state = session.state
     if state.panel != "distance" or not (state.wave and state.animating):
         return None
     end = farthest(state)

@@ -25,22 +25,20 @@ def watch(session: Session) -> None:
     session.view.listen("play", lambda data: session.state.param.update(playing=bool(data["on"])))
 
 
-def motion_part(session: Session) -> dict[str, Any] | None:
-    """Return the motion that is on, or None."""
-    state = session.state
+def motion_part(state: State) -> dict[str, Any] | None:
+    """Return the motion that is on, or None; raise a `CutcellError` if it cannot be played."""
     clip = clip_of(state)
-
-    def make() -> dict[str, Any] | None:
-        try:
-            return clip_part(state, clip)
-        except CutcellError as error:  # the clip cannot be played
-            session.fail(error)
-            return None
-
-    part: dict[str, Any] | None = session.memo(
-        "clip", (state.rig, clip is None, state.motion), make
-    )
+    inputs = (state.rig, clip is None, state.motion)
+    part: dict[str, Any] | None = state.memo("clip", inputs, lambda: clip_part(state, clip))
     return part
+
+
+def is_playing(state: State) -> bool:
+    """Return whether a motion runs in the browser."""
+    try:
+        return bool(state.playing and motion_part(state))
+    except CutcellError:
+        return False
 
 
 class Hand:

@@ -51,9 +51,8 @@ def can_select(state: State) -> bool:
     return bool(is_ready and PANELS[state.panel].paints)
 
 
-def lasso_part(session: Session) -> dict[str, Any] | None:
+def lasso_part(state: State) -> dict[str, Any] | None:
     """Return the lasso's settings for the view; None while it is off."""
-    state = session.state
     if not (state.lasso and can_select(state) and not state.playing):
         return None
     return {"through": state.lasso_through}
