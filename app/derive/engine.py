@@ -14,9 +14,9 @@ from param.parameterized import batch_call_watchers
 
 from cutcell.runtime.progress import silent
 
-from .derived import Derived, Inputs, in_order
+from .derived import Derived, Inputs
 from .jobs import WAITING
-from .reading import Recorded
+from .reading import ReadOnlyState, Recorded
 from .work import Work
 
 RULES, VIEW, WIDGETS = range(3)
@@ -59,6 +59,18 @@ class _Entry:
         return self.values[0][1] if self.values else None
 
 
+class _Current(ReadOnlyState):
+    """The state for results: each one that is read is brought up to the state first."""
+
+    def __init__(self, state: Any, refresh: Callable[[str], None]) -> None:
+        super().__init__(type(state), state)
+        self.__dict__["_refresh"] = refresh
+
+    def __getattr__(self, name: str) -> Any:
+        self._refresh(name)
+        return super().__getattr__(name)
+
+
 class Engine:
     """Keeps the results of one page up to its state; all methods belong to the page's thread.
 
@@ -79,6 +91,9 @@ class Engine:
     def __init__(self, state: Any, work: Work, owner: Any = None) -> None:
         self._state, self._work, self._owner = state, work, owner
         self._declared: dict[str, Derived] = {}
+        self._due: dict[str, Derived] = {}
+        self._rested: Hashable = None
+        self._current = _Current(state, self._refresh_result)
         self._parts: dict[str, Recorded[tuple[Hashable, ...]]] = {}
         self._entries: dict[tuple[Hashable, ...], _Entry] = {}
         self._failures: list[Callable[[], None]] = []
@@ -91,8 +106,8 @@ class Engine:
         state.param.watch(self._noted, names, precedence=1)
 
     def declare(self, results: Iterable[Derived]) -> None:
-        """Keep results up to the state from now on, each after those that it follows."""
-        self._declared = in_order(results)
+        """Keep results up to the state from now on."""
+        self._declared = {one.name: one for one in results}
         self._parts = {
             name: Recorded(lambda state, parts=one.parts: tuple(parts(state)))
             for name, one in self._declared.items()
@@ -161,14 +176,14 @@ class Engine:
         self._again = True
         if self._updating or self._work.closed:
             return
-        self._updating = True
+        self._updating, self._rested = True, rested
         try:
             while self._again:
                 self._again = False
                 with batch_call_watchers(self._state):
-                    for derived in self._declared.values():
-                        for entry in self._entries_of(derived):
-                            self._refresh(entry, entry.key == rested)
+                    self._due = dict(self._declared)
+                    for name in self._declared:
+                        self._refresh_result(name)
                     keys = self._work.running() & frozenset(self._entries)
                     if keys != self._state.computing:
                         self._state.param.update(computing=keys, queued=self._state.queued & keys)
@@ -176,7 +191,7 @@ class Engine:
                 for report in failures:
                     report()
         finally:
-            self._updating = False
+            self._updating, self._due = False, {}
         self._work.rest()
 
     def is_fresh(self, name: str) -> bool:
@@ -220,7 +235,7 @@ class Engine:
         name = derived.name
         keys: list[tuple[Hashable, ...]] = [(name,)]
         if derived.parts is not None:
-            keys = [(name, part) for part in self._parts[name].read(self._state)]
+            keys = [(name, part) for part in self._parts[name].read(self._current)]
             keys += [key for key in self._entries if key[0] == name and key not in keys]
         for key in keys:
             if key not in self._entries:
@@ -228,12 +243,12 @@ class Engine:
         return [self._entries[key] for key in keys]
 
     def _inputs(self, entry: _Entry) -> Inputs | None:
-        return entry.inputs.read(self._state)
+        return entry.inputs.read(self._current)
 
     def _wants(self, entry: _Entry) -> bool:
         parts = self._parts.get(entry.derived.name)
-        is_offered = parts is None or entry.part[0] in parts.read(self._state)
-        return is_offered and entry.wanted.read(self._state)
+        is_offered = parts is None or entry.part[0] in parts.read(self._current)
+        return is_offered and entry.wanted.read(self._current)
 
     def _is_missing(self, entry: _Entry) -> bool:
         inputs = self._inputs(entry)
@@ -251,6 +266,15 @@ class Engine:
             if not (has_older and self._is_ready(one)) and not self.is_fresh(one.name):
                 return False
         return True
+
+    def _refresh_result(self, name: str) -> None:
+        """Bring a result up to the state, after those that it follows or reads."""
+        derived = self._due.pop(name, None)
+        if derived is not None:
+            for earlier in derived.after:
+                self._refresh_result(earlier)
+            for entry in self._entries_of(derived):
+                self._refresh(entry, entry.key == self._rested)
 
     def _refresh(self, entry: _Entry, rested: bool) -> None:
         derived, work = entry.derived, self._work

@@ -133,7 +133,7 @@ def test_something_is_done_when_a_value_changes():
 
 @pytest.fixture
 def taught(session, loop):
-    """A session in a lesson of three steps that read it."""
+    """Return a session with a lesson of three steps."""
     either = Answer("choice", options=["a", "b"])
     rays = "panel=graph&flat=rays&bone=elbow"
     session.state.resolution = 16

@@ -69,7 +69,7 @@ def _export_diagnosis(
 def _reusable(state: State) -> BoneDistances | None:
     """Return the binding's distances if a diagnosis of the character would measure the same."""
     names = tuple(name for name in GRAPH if name != "resolution")
-    if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
+    if state.binding is None or method_of(State(), names) != method_of(state, names):
         return None
     distances: BoneDistances = state.binding.distances
     of_rig = data_fingerprint(state.rig.skeleton)
