@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cutcell.rig import TriangleMesh
 
+from ...document.kinds import MOMENT
 from ...editing.stroke import BrushMode
 
 MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
@@ -54,6 +55,8 @@ class Choices(param.Parameterized):
 
 BRUSH = frozenset(Choices.param) - {"name"}
 """Tools are chosen, but are no choices: undo takes strokes back, not the brush."""
+for one in BRUSH:
+    Choices.param[one].precedence = MOMENT
 
 
 def selected(state: Any) -> NDArray[np.bool_] | None:

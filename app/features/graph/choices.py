@@ -7,6 +7,7 @@ from typing import Any
 
 import param
 
+from ...document.kinds import MOMENT
 from ...document.method import GRAPH, choices_of
 from ..panel import Panel
 
@@ -54,7 +55,9 @@ class Choices(choices_of(GRAPH)):  # type: ignore[misc]
         default="kind",
         objects={"Kind": "kind", "Depth": "depth", "Distance": "distance", "Part": "component"},
     )
-    node = param.Integer(None, allow_None=True, doc="The node that is looked at, or None.")
+    node = param.Integer(
+        None, allow_None=True, doc="The node that is looked at, or None.", precedence=MOMENT
+    )
 
     cut_keeps: param.Selector[str] = param.Selector(
         default="face",

@@ -6,6 +6,8 @@ from typing import Any
 
 import param
 
+from ...document.kinds import MOMENT
+
 
 class Choices(param.Parameterized):
     """How vertices are selected, and what is done with them."""
@@ -31,3 +33,5 @@ class Choices(param.Parameterized):
 
 SELECT = frozenset(Choices.param) - {"name"}
 """Tools, which are no choices of a scene: neither undo nor the address has them."""
+for one in SELECT:
+    Choices.param[one].precedence = MOMENT
