@@ -7,9 +7,8 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
-from ..features.compare.choices import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, standard
-from ..features.disagreement.choices import settled_of
-from .kinds import MOMENT
+from .common import MOMENT
+from .side_by_side import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, settled_of, standard
 from .state import State
 
 NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled", "edits")
@@ -25,11 +24,12 @@ CAMERA = 6
 def simple(state: State) -> dict[str, param.Parameter]:
     """Return the parameters that are plain choices: switches, numbers, one of a few.
 
-    Those of `MOMENT` are none.
+    Those of `MOMENT` and of tools are none.
     """
     kinds = (param.Boolean, param.Selector, param.Number)
     allowed = state.param.objects("existing")
-    return {n: p for n, p in allowed.items() if p.precedence != MOMENT and isinstance(p, kinds)}
+    plain = {n: p for n, p in allowed.items() if p.precedence != MOMENT and isinstance(p, kinds)}
+    return {name: one for name, one in plain.items() if name not in state.tools}
 
 
 def snapshot(state: State) -> dict[str, Any]:

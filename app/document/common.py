@@ -6,8 +6,9 @@ from typing import Any
 
 import param
 
-from .kinds import MOMENT
-from .panels import PANELS
+MOMENT = -1.0
+"""`precedence` of parameters that belong to one person or moment: undo leaves them, and the address
+has no entry with their names; it may have entries of its own for them."""
 
 CUTS = ("auto", "off", "x", "y", "z", "free")
 """Cuts through the body; a free plane has any direction, and auto is z on the panel graph."""
@@ -16,7 +17,7 @@ CUTS = ("auto", "off", "x", "y", "z", "free")
 class Common(param.Parameterized):
     """The part of the state that belongs to no panel."""
 
-    panel: param.Selector[str] = param.Selector(default="weights", objects=list(PANELS))
+    panel: str  # a parameter of the class that has all panels
 
     demo = param.String("", doc="Id of the demo character that was chosen; else empty.")
     rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")

@@ -4,7 +4,7 @@ from typing import Any
 
 from cutcell_viewers.camera import Camera, framing
 
-from ..features.character import bounds_of, camera_part
+from .framing import bounds_of, camera_part
 from .session import Session
 
 

@@ -65,10 +65,10 @@ class Session:
     view : View
     schedule : callable
         See `derive.jobs.Schedule`.
+    state : State
 
     Attributes
     ----------
-    state : State
     work : Work
         What a person has started, and all other work off the page's thread.
     engine : Engine
@@ -100,8 +100,8 @@ class Session:
         Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
-    def __init__(self, view: View, schedule: Schedule) -> None:
-        self.state = State()
+    def __init__(self, view: View, schedule: Schedule, state: State) -> None:
+        self.state = state
         self.view = view
         self.work = Work(schedule, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)

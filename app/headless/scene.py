@@ -14,9 +14,9 @@ from cutcell_viewers.materials import Textures, load_textures
 
 from ..derive.derived import ComputedWhenRead
 from ..document.state import State
-from ..features.declared import RESULTS
+from ..features import results
 from ..features.scenes import following, resolve
-from ..features.sweep import sweep_scenes
+from ..shell.session.sweep import sweep_scenes
 from .choices import Choices, state_of
 from .names import clip_named
 
@@ -114,7 +114,7 @@ def _computed(
             raise ParameterError(
                 f"measures side by side are drawn at a resolution of {allowed}, not {resolution}"
             ) from None
-    computed = cast(State, ComputedWhenRead(state, RESULTS, progress))
+    computed = cast(State, ComputedWhenRead(state, results(), progress))
     if choices.finding and computed.selected_finding is None:
         codes = ", ".join(one.code for one in computed.diagnosis.findings) or "none at all"
         raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')

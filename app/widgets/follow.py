@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Set
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 from panel.io import hold
 
 from ..derive.engine import WIDGETS
-from ..derive.reading import ReadOnlyState
+from ..derive.reading import view_of
 from ..document.session import Session
 from ..document.state import State
 
-NAMES = frozenset(State.param)
+
+@cache
+def names_of(kind: type[State]) -> frozenset[str]:
+    """Return the names of all parameters of a class of states."""
+    return frozenset(kind.param)
 
 
 @dataclass(eq=False)
@@ -46,6 +50,7 @@ class Followers:
         self.session, self._panel = session, panel
         self._all: list[Follower] = []
         self._missed: Set[str] = frozenset()
+        self._names = names_of(type(session.state))
         session.engine.follow(self._changed, WIDGETS)
 
     def add(self, one: Follower) -> Any:
@@ -58,7 +63,7 @@ class Followers:
         self._all = [one for one in self._all if not one.is_owned_by(owner)]
 
     def _read(self, one: Follower) -> Any:
-        view = ReadOnlyState(State, self.session.state)
+        view = view_of(self.session.state)
         value = one.function(view)
         one.names = view.read_names
         return value
@@ -69,7 +74,7 @@ class Followers:
 
     def _changed(self, names: Set[str], is_reset: bool) -> None:
         # A parameter is triggered where nothing came of a choice: every widget is reset.
-        names = NAMES if is_reset else self._missed | names
+        names = self._names if is_reset else self._missed | names
         is_seen = self._panel in ("", self.session.state.panel)
         self._missed = frozenset() if is_seen else names
         if not is_seen:

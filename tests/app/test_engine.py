@@ -11,7 +11,7 @@ from cutcell_app.derive.engine import Engine
 from cutcell_app.derive.work import Work
 
 
-class State(param.Parameterized):
+class PageState(param.Parameterized):
     """Two choices, and results that follow from them."""
 
     a = param.Integer(1)
@@ -65,7 +65,7 @@ class Page:
     """An engine with all that surrounds it."""
 
     def __init__(self, *results):
-        self.state, self.pool, self.clock = State(), Pool(), Clock()
+        self.state, self.pool, self.clock = PageState(), Pool(), Clock()
         self.errors, self.hooks = [], []
         self.work = Work(
             lambda action: action(), self.errors.append, pool=self.pool, clock=self.clock
@@ -335,12 +335,12 @@ def test_a_closed_page_computes_nothing_any_more():
 
 def test_without_an_engine_results_are_computed_when_they_are_read_if_they_are_wanted():
     results = doubled(), total(), powers(wanted=lambda state, part: part == 3)
-    view = ComputedWhenRead(State(a=2), results)
+    view = ComputedWhenRead(PageState(a=2), results)
     assert computed == []
     assert (view.total, view.doubled, view.powers) == (5, 4, {3: 8})
     assert view.total == 5
     assert computed == [2]
-    given = ComputedWhenRead(State(a=2, doubled=7), results)
+    given = ComputedWhenRead(PageState(a=2, doubled=7), results)
     assert given.total == 8, "what is there stays"
 
 

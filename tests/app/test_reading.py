@@ -13,7 +13,7 @@ from cutcell_app.document import loading
 from cutcell_app.features.learn import steps
 from cutcell_app.features.learn.lesson import Answer, Lesson, Step
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import view_parts
+from cutcell_app.shell.session import view_parts
 from tests.app.test_engine import Page, doubled, powers, total
 from tests.viewers.arm import arm_rig
 

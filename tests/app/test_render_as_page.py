@@ -3,10 +3,10 @@
 import pytest
 
 from cutcell_app.document import loading
-from cutcell_app.features.disagreement.results import look_at
+from cutcell_app.features.compare.disagreement.results import look_at
 from cutcell_app.headless.choices import RENDERED, Choices
 from cutcell_app.headless.scene import describe
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session.begin import begin
 from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
 

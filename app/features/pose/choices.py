@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
-from ...document.kinds import MOMENT
-from ..panel import Panel
+from ...document.common import MOMENT
+from ...document.state import Panel
 
 PANEL = Panel(
     "Pose",
