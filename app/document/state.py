@@ -83,6 +83,8 @@ class State(edits.Choices, Common):
 
         def __getattr__(self, name: str) -> Any: ...
 
+        def __setattr__(self, name: str, value: Any) -> None: ...
+
     @property
     def open_panel(self) -> Panel:
         """The record of the panel that is open."""

@@ -10,7 +10,7 @@ from .modules import Clickable, script
 class Curves(Clickable):
     """Plots below each other; a click on a point reports its id."""
 
-    plots = param.List([], doc="See `features/lab/curves.py`.")
+    plots = param.List([], doc="See `features/compare/lab/curves.py`.")
 
     _esm = script("curves")
 

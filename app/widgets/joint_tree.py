@@ -10,7 +10,7 @@ from .modules import Clickable, script
 class JointTree(Clickable):
     """A tree of joints; a click reports a joint, and whether it is let carry weight, or None."""
 
-    rows = param.List([], doc="See `features.correct.joints.joint_rows`.")
+    rows = param.List([], doc="See `editing.correct.joints.joint_rows`.")
     chosen = param.Integer(-1, doc="The joint that is marked; -1 for none.")
 
     _esm = script("joint_tree")
