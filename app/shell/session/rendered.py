@@ -19,10 +19,8 @@ MAX_TILES = 16
 
 
 def watch(session: Session) -> None:
-    """Draw a frame when the browser asks for one; say when the switch is turned."""
-    state, view = session.state, session.view
-    state.param.watch(lambda *events: view.send(rendered=state.rendered), "rendered")
-    view.listen(DrawFrame, lambda message: draw(session, message))
+    """Draw a frame when the browser asks for one."""
+    session.view.listen(DrawFrame, lambda message: draw(session, message))
 
 
 def draw(session: Session, message: DrawFrame) -> None:
