@@ -112,7 +112,7 @@ class Actor:
         Depth behind the cut that is kept; 0 keeps all.
     reading : Reading, optional
         Value shown where the pointer rests on it.
-    film : bool
+    follows_wavefront : bool
         Whether only scalars up to the description's `front` are coloured.
     """
 
@@ -143,7 +143,7 @@ class Actor:
     apart: Apart | None = None
     view: int | None = None
     reading: Reading | None = None
-    film: bool = False
+    follows_wavefront: bool = False
 
     def __post_init__(self) -> None:
         for name in ("points", "normals", "scalars"):
@@ -234,7 +234,7 @@ class Description(Summarized):
     views : tuple of str
         Captions of the views side by side under one camera; a single view has none.
     front : float, optional
-        Scalars above it are left grey on the actors that are part of the film.
+        Scalars above it are grey on the actors that follow the wavefront.
     images : array, shape (k, s, s, 4), uint8, optional
         Images of the actors' `materials`; see `materials.Textures`.
     blending : {"linear", "dual"}

@@ -84,7 +84,7 @@ class FlatSection:
         return np.where(self.flips, 1 - chosen, chosen)
 
     def data(self) -> dict[str, Any]:
-        """Return what the browser needs, as JSON has it; see `flat_scene.js`."""
+        """Return the section as JSON values for the browser; see `flat_scene.js`."""
         graph, outline = self.graph, self.flat(self.outline)
         margin = 1 / graph.lattice.resolution
         whole = self.flat(graph.lattice.to_unit(self.rig.mesh.bounds))

@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[1] / "frontend"
 
 
 def _version() -> str:
-    """Return what is another one whenever a script or a style is."""
+    """Return a hash of all scripts and styles."""
     files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
     content = b"".join(path.name.encode() + path.read_bytes() for path in files)
     return hashlib.sha256(content).hexdigest()[:12]

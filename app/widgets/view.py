@@ -70,14 +70,14 @@ class SceneView(JSComponent):
             self._begin()
 
     def present(self, description: Description) -> None:
-        """Make the view what a description says."""
+        """Show a description."""
         self._next = description
         if self._ready:
             self._send(changes(self._sent, description, self._sent_arrays))
             self._sent = description
 
     def send(self, **parts: Any) -> None:
-        """Send the parts of the view that are no actors: see `scenes.common`.
+        """Send the parts of the view that are no actors: see `shell/view_parts.py`.
 
         The last value of each is kept, for a browser that comes later.
         """
