@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cutcell.io.materials.face_colors import FaceColors
 from cutcell.runtime.repr import Summarized
 
-from .palette import BODY, Color
+from .palette import BODY, REPLACEABLE, Color
 from .skin import Blending, Skin
 
 if TYPE_CHECKING:
@@ -278,6 +278,19 @@ def _convert(owner: object, name: str, kind: type[np.generic]) -> None:
     array = getattr(owner, name)
     if array is not None:
         object.__setattr__(owner, name, np.ascontiguousarray(array, kind))
+
+
+def with_colormap(description: Description, name: str) -> Description:
+    """Return a scene whose weights, distances and depths have the colours of another map."""
+    if name == "default":
+        return description
+    actors, legend = dict(description.actors), description.legend
+    for key, actor in actors.items():
+        if actor.scalars is not None and actor.colormap in REPLACEABLE:
+            actors[key] = replace(actor, colormap=f"{actor.colormap}:{name}")
+    if legend is not None and legend.colormap in REPLACEABLE:
+        legend = replace(legend, colormap=f"{legend.colormap}:{name}")
+    return replace(description, actors=actors, legend=legend)
 
 
 def in_view(description: Description, view: int) -> Description:

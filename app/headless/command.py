@@ -47,7 +47,7 @@ EPILOG = """Examples:
 - `cutcell render --lesson lesson.html`"""
 LESSON = "Lesson"
 """Heading of the options for it."""
-INTERACTIVE = {"rig", "out", "panel", "bone", "skeleton_file", "quiet", *METHOD_OPTIONS}
+INTERACTIVE = {"rig", "out", "panel", "bone", "colormap", "skeleton_file", "quiet", *METHOD_OPTIONS}
 """Parameters of the command that apply to an interactive page."""
 
 
@@ -114,7 +114,7 @@ def render(
         )
     if out.suffix.lower() == ".html":
         _check_interactive(explicit)
-        _write_page(rig, out, choices, options, skeleton_file, quiet)
+        _write_page(rig, out, {**choices, **settings}, options, skeleton_file, quiet)
         return
     swept = choices["sweep"] is not None
     is_clip = choices["clip"] is not None and choices["time"] is None
@@ -201,19 +201,23 @@ def _write_page(
     from cutcell.io import load
     from cutcell.io.files import naming
     from cutcell.runtime.writing import check_place, write_all
+    from cutcell_viewers.palette import COLORMAPS
 
     from . import bone_index
     from .interactive import VIEWS, interactive_page
 
     check_place(out)
     view = check_choice("panel", choices["panel"] or "weights", VIEWS)
+    colormap = check_choice("colormap", choices["colormap"] or "default", COLORMAPS)
     method, loaded = chosen_method(options), load(rig, skeleton=skeleton)
     with naming(rig):
         loaded.require_joints()
         joint = None if choices["bone"] is None else bone_index(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
         binding = bind(loaded, options["resolution"], method=method, progress=progress)
-        page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
+        page = interactive_page(
+            loaded, binding, joint=joint, view=view, colormap=colormap, progress=progress
+        )
         write_all({out: page.encode()})
     _report(out, "an interactive page, ", [*loaded.warnings, *binding.warnings], quiet)
 

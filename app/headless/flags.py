@@ -72,6 +72,9 @@ SETTINGS = _rows(
         "One slice of the lattice with its rays, such as z, or z=0.5:x, whose rays run along x:"
         " graph."),
     sources=(INSIDE, "--sources", "", "Sources of the distances."),
+    colormap=(HOW, "--colormap", "NAME",
+        "Colours of distances, depths and a bone's weights: viridis, cividis, plasma, inferno,"
+        " magma, turbo or gray, as Matplotlib has them."),
     path=(INSIDE, "--path", "VERTEX", "The shortest path from a vertex to the bone."),
     wave=(INSIDE, "--wave", "PART",
         "Only distances up to this part of the greatest, from 0 to 1."),

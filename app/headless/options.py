@@ -152,6 +152,7 @@ def _part(name: str, choice: str, text: str | None) -> dict[str, Any]:
 READERS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "blending": lambda text: {"blending": text},
     "colors": lambda text: {"pose_colors": text},
+    "colormap": lambda name: {"colormap": name},
     "cut": _cut,
     "face": _face,
     "keep": _keep,

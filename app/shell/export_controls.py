@@ -83,7 +83,7 @@ def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
 def page(state: State) -> Callable[..., str]:
     """Return a function that makes the interactive page, which opens on the current panel."""
     view = state.panel if state.panel in VIEWS else "weights"
-    return partial(interactive_page, view=view)
+    return partial(interactive_page, view=view, colormap=state.colormap)
 
 
 def _described(state: State) -> str:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
+from cutcell_viewers.palette import COLORMAPS
+
 from ..panel import Panel
 
 if TYPE_CHECKING:
@@ -43,6 +45,12 @@ class Choices(param.Parameterized):
     """Which distances are seen."""
 
     field: Any = param.Parameter(None, doc="Distance of the chosen bone at every graph node.")
+    colormap: param.Selector[str] = param.Selector(
+        default="default",
+        objects={name.capitalize(): name for name in COLORMAPS},
+        label="Colour map",
+        doc="Of distances, depths and the weights of one bone: one of `palette.COLORMAPS`.",
+    )
     starts = param.Boolean(False, label="Sources")
     path = param.Boolean(True, label="Shortest path from the clicked vertex")
     front = param.Number(
