@@ -34,9 +34,8 @@ from cutcell_app.headless import (
     state_of,
 )
 from cutcell_app.headless import scene as describing
-from cutcell_app.headless.flags import CHOICES, PICTURE, SETTINGS
 from cutcell_app.headless.lesson_page import STOPS
-from cutcell_app.headless.options import READERS
+from cutcell_app.headless.options import CHOICES, PICTURE, READERS, SETTINGS
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.palette import colormap
