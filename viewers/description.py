@@ -193,9 +193,9 @@ class Actor:
         -------
         Actor
         """
-        from .polydata import actor_of
+        from .polydata import arrays_of
 
-        return actor_of(mesh, scalars, **settings)
+        return cls(**{**arrays_of(mesh, scalars), **settings})
 
 
 @dataclass(frozen=True)

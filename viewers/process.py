@@ -27,7 +27,7 @@ from cutcell.runtime.writing import write_all
 
 from .camera import Camera
 from .description import Description, in_view
-from .film import Order, draw
+from .order import Order
 from .tiles import Tile
 
 if TYPE_CHECKING:
@@ -222,6 +222,8 @@ def _read(stream: IO[bytes], messages: Queue[Any]) -> None:
 def main() -> None:
     """Answer the requests of the input until it ends."""
     import psutil
+
+    from .film import draw
 
     end_first_without_memory()
     source, sink = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")

@@ -22,7 +22,7 @@ from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
 from .description import Actor, Description
 from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .polydata import lookup_table
+from .plotters import lookup_table
 from .strokes import depths, see_strokes, shade_strokes, stroke_data
 from .textured import cut_out, pieces, texture
 from .vtk_internals import add_overlay, clip, polygon_actor

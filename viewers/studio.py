@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,3 +143,18 @@ def _ground(theme: Theme, height: int) -> NDArray[np.float32]:
     part = (np.arange(height, dtype=np.float32) + 0.5)[:, None, None] / height
     top, bottom = (255 * np.array(color, np.float32) for color in (theme.top, theme.bottom))
     return top + part * (bottom - top)
+
+
+def points_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
+    """Return the points of all actors but overlays in some poses, shape (n, 3)."""
+    whole = [actor for actor in description.actors.values() if not actor.overlay]
+    points = [a.points_in(pose, description.blending) for a in whole for pose in poses]
+    return np.concatenate([np.empty((0, 3)), *points])
+
+
+def box_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
+    """Return the lowest and highest corner of some poses, shape (2, 3)."""
+    points = points_of(description, poses)
+    if not len(points):
+        return description.bounds
+    return np.stack([points.min(axis=0), points.max(axis=0)])

@@ -16,7 +16,7 @@ from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
-from cutcell_viewers.film import FRAMES, Order
+from cutcell_viewers.order import FRAMES, Order
 from cutcell_viewers.pose_scene import clip_in_scene
 from cutcell_viewers.process import draw_isolated
 
