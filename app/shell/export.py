@@ -26,9 +26,8 @@ from ..document.session import Session
 from ..features.pose.scene import chosen_clip, clip_of
 from ..features.scenes import Memo, following, resolve
 from ..features.sweep import sweep_of, sweep_scenes
-from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
-from ..files.table_export import save_numbers, settings_of
+from ..files.table_export import save_graph, save_numbers, settings_of
 from .export_queue import proceed, when_ready
 
 Done = Callable[[str, bytes], None]

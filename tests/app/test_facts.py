@@ -15,7 +15,7 @@ from cutcell_app.features.compare.results import Compared
 from cutcell_app.features.compare.scene import title_of
 from cutcell_app.features.scenes import Memo
 from cutcell_app.features.weights.facts import NO_WEIGHT, components, node_facts, vertex_facts
-from cutcell_app.files.graph_numbers import save_graph
+from cutcell_app.files.table_export import save_graph
 
 
 def facts(rig, binding, vertex):
