@@ -15,6 +15,7 @@ from .camera import PAGE_HEIGHT, Camera
 from .description import Description
 from .encoders import find_ffmpeg
 from .palette import THEMES, Theme
+from .tiles import Tile
 
 PICTURES = (".png", ".jpg", ".jpeg")
 FILMS = (".mp4", ".gif")
@@ -55,6 +56,10 @@ class Order:
         A figure of these instead, each a picture of `size`; each view is a panel.
     captions : tuple of str
         Of all panels; by default the titles of legends that differ.
+    tiles : tuple of Tile
+        The rectangle of each view, as on a page's canvas; by default views share the picture.
+    fine : bool
+        Whether corners are darkened by ambient occlusion and edges are smooth.
     """
 
     description: Description
@@ -70,6 +75,8 @@ class Order:
     scenes: tuple[Description, ...] = ()
     panels: tuple[Description, ...] = ()
     captions: tuple[str, ...] = ()
+    tiles: tuple[Tile, ...] = ()
+    fine: bool = False
 
     def check(self, path: Path) -> str:
         """Return the ending of the file's name; see `check_picture_file`."""

@@ -13,7 +13,7 @@ from .description import Description, in_view
 from .lettering import free_corner, legend_card, put_card, write_captions
 from .palette import LIGHT, Theme, to_bytes
 from .scene import Scene
-from .tiles import shape_of, tiles
+from .tiles import Tile, shape_of, tiles
 
 SAME = 4
 """Largest difference, of 255, from the background of a pixel that shows nothing."""
@@ -35,6 +35,10 @@ class Studio(AbstractContextManager["Studio"]):
         Height of a page's canvas that looks the same, in its pixels.
     transparent : bool
         Whether pictures have a fourth channel instead of a background.
+    tiles : tuple of Tile, optional
+        The rectangle of each view.
+    fine : bool
+        See `Scene`.
 
     Attributes
     ----------
@@ -50,10 +54,13 @@ class Studio(AbstractContextManager["Studio"]):
         legend: bool = True,
         page_height: float = PAGE_HEIGHT,
         transparent: bool = False,
+        tiles: tuple[Tile, ...] = (),
+        fine: bool = False,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
         self.is_steady = False
         self._transparent, self._ratio = transparent, size[1] / page_height
+        self._given_tiles, self._fine = tiles, fine
         self._scenes: list[Scene] = []
         self._description = description
         self._legend_place: tuple[int, int] | None = None
@@ -64,9 +71,9 @@ class Studio(AbstractContextManager["Studio"]):
         for scene in self._scenes:
             scene.close()
         count, shape = max(len(self._description.views), 1), shape_of(self._description.bounds)
-        self._tiles = tiles(count, size, shape)
+        self._tiles = list(self._given_tiles) or tiles(count, size, shape)
         self._scenes = [
-            Scene(self.theme, tile[2:], pixel_ratio=self._ratio) for tile in self._tiles
+            Scene(self.theme, tile[2:], self._fine, self._ratio) for tile in self._tiles
         ]
         self.show(self._description)
 

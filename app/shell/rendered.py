@@ -1,11 +1,13 @@
 """Rendered: the canvas as PyVista draws it on the server, once the view rests."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
-from cutcell_viewers.process import DrawingProcess, Frame
+from cutcell_viewers.order import Order
+from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ..document.session import Session
@@ -34,7 +36,7 @@ def draw(session: Session, message: dict[str, Any]) -> None:
 
     def work(progress: Any) -> bytes | CutcellError:
         try:
-            return PROCESS.draw(Frame(scene.posed(), **options))
+            return PROCESS.draw(Order(replace(scene.posed(), views=()), **options))
         except CutcellError as error:
             return error
 
@@ -64,7 +66,7 @@ def _frame_options(message: dict[str, Any]) -> dict[str, Any]:
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
-        "pixel_ratio": ratio,
+        "page_height": size[1] / ratio,
         "fine": bool(message["fine"]),
     }
 
