@@ -74,7 +74,7 @@ def across(direction: ArrayLike, up: ArrayLike = (0, 1, 0)) -> NDArray[np.float6
     """Return the rows right, up and towards the eye of a view from a direction."""
     toward = np.array(direction, float)
     toward /= np.linalg.norm(toward)
-    right = np.cross(up, toward)
+    right = np.cross(np.asarray(up, float), toward)
     right /= np.linalg.norm(right)
     return np.array([right, np.cross(toward, right), toward])
 

@@ -70,7 +70,8 @@ def choices_at(
     rest = {name: value for name, value in address.items() if name not in replaced}
     own = {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
     method = chosen_method({**options, **{n: rest.pop(n) for n in METHOD if n in rest}})
-    return Choices(**{**fields, **own}, settings={**rest, **settings}, method=method)
+    named: dict[str, Any] = {**fields, **own}
+    return Choices(**named, settings={**rest, **settings}, method=method)
 
 
 def read_camera(text: str) -> Camera:
