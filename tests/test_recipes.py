@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from cutcell_app.document.state import PANELS
 from cutcell_app.features.builders import BUILDERS
 from cutcell_app.features.scenes import SCENES
+from cutcell_app.features.state import PANELS
 from tests.test_layers import ROOT
 
 PANEL = """

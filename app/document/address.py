@@ -7,17 +7,14 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
-from ..features.brush.choices import BRUSH
-from ..features.compare.choices import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, standard
-from ..features.disagreement.choices import settled_of
-from ..features.select.choices import SELECT
+from .side_by_side import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, settled_of, standard
 from .state import State
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip",
                  "busy", "stage", "fraction", "message", "step", "staged", "vertex", "node", "part",
                  "layer", "animating", "joint_handle", "measuring_errors",
-                 "sweeping"}) | BRUSH | SELECT  # fmt: skip
-"""Parameters that belong to one person or moment, or have their own entry in the address."""
+                 "sweeping"})  # fmt: skip
+"""Parameters that belong to one person or moment, or have their own entry in the address, besides tools."""
 
 NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled", "edits")
 """Choices that only apply to the open character."""
@@ -33,7 +30,7 @@ def simple(state: State) -> dict[str, param.Parameter]:
     """Return the parameters that are plain choices: switches, numbers, one of a few."""
     kinds = (param.Boolean, param.Selector, param.Number)
     allowed = state.param.objects("existing")
-    return {n: p for n, p in allowed.items() if n not in OWN and isinstance(p, kinds)}
+    return {n: p for n, p in allowed.items() if n not in OWN | state.tools and isinstance(p, kinds)}
 
 
 def snapshot(state: State) -> dict[str, Any]:

@@ -16,19 +16,17 @@ from cutcell_assets import DEMOS
 from cutcell_viewers.camera import Camera, framing
 
 from ..derive.jobs import READING
-from ..features.character import bounds_of, camera_part, first_joint
-from ..features.compare.results import carry
-from ..features.correct.choices import changes, same_structure
-from ..features.correct.commands import edited_state
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
 from . import recording as history
 from .address import first_clip
+from .edits import changes, edited_state, same_structure
+from .framing import bounds_of, camera_part, first_joint
 from .look import set_camera
 from .method import chosen_by
-from .panels import PANELS
 from .session import Session
+from .side_by_side import carry
 
 
 def load_demo(
@@ -232,7 +230,7 @@ def _correct(session: Session, text: str) -> None:
             if stored is None:
                 raise ParameterError("the server no longer has them")
             edits = stored
-        changed = edited_state(session, edits)
+        changed = edited_state(session.state, edits)
         if "joint" in changed:  # the choices already refer to the edited skeleton
             changed = {k: v for k, v in changed.items() if k not in ("joint", "turns")}
             if text:
@@ -265,7 +263,7 @@ def motion(session: Session, panel: str, arrival: dict[str, Any]) -> dict[str, b
     """Return the motion that an address starts, unless the browser prefers reduced motion."""
     if not arrival.get("playing") or session.view.calm:
         return {}
-    names = ("moving", "playing") if PANELS[panel].poses else ("animating",)
+    names = ("moving", "playing") if session.state.panels[panel].poses else ("animating",)
     return dict.fromkeys(names, True)
 
 

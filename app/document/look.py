@@ -4,9 +4,7 @@ from typing import Any
 
 from cutcell_viewers.camera import Camera, framing
 
-from ..features.brush.choices import BRUSH
-from ..features.character import bounds_of, camera_part, theme_of, theme_part
-from ..features.scenes import resolve
+from .framing import bounds_of, camera_part, theme_of, theme_part
 from .session import Session
 from .state import UNSEEN
 
@@ -14,8 +12,8 @@ from .state import UNSEEN
 def watch(session: Session) -> None:
     """Connect the view to the state, and the state to picks in the view."""
     state, view = session.state, session.view
-    drawn = {"brush", "brush_selection"}
-    watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
+    hidden = UNSEEN | {name for name in state.tools if name.startswith("brush_")}
+    watched = [name for name in state.param if name not in hidden - {"brush_selection"}]
     state.param.watch(lambda *events: show(session), watched)
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
@@ -73,10 +71,10 @@ def show(session: Session) -> None:
     state, view, memo = session.state, session.view, session.memo
     if state.quick:
         session.work.cancel("scene")
-        view.present(resolve(state, memo))
+        view.present(session.resolve(state, memo))
     else:
         now = state.snapshot()
-        session.work.newest("scene", lambda progress: resolve(now, memo), view.present)
+        session.work.newest("scene", lambda progress: session.resolve(now, memo), view.present)
 
 
 def show_theme(session: Session) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 from cutcell.errors import CutcellError
 
-from ..features.correct.choices import changed_only
 from .address import NOTED, simple, snapshot, to_query
+from .edits import changed_only
 from .history import History
 from .session import Session
 

@@ -23,6 +23,9 @@ from .state import State
 
 logger = logging.getLogger("cutcell.app")
 
+Resolve = Callable[[State, Memo], Description]
+"""Returns the scene of a state; a memo speeds up a series of calls."""
+
 WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
 
@@ -65,10 +68,12 @@ class Session:
     view : View
     schedule : callable
         See `derive.jobs.Schedule`.
+    state : State
+    resolve : callable
+        Returns the scene of a state; see `features.scenes.resolve`.
 
     Attributes
     ----------
-    state : State
     work : Work
         What a person has started, and all other work off the page's thread.
     engine : Engine
@@ -101,9 +106,10 @@ class Session:
         Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
-    def __init__(self, view: View, schedule: Schedule) -> None:
-        self.state = State()
+    def __init__(self, view: View, schedule: Schedule, state: State, resolve: Resolve) -> None:
+        self.state = state
         self.view = view
+        self.resolve = resolve
         self.work = Work(schedule, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)
         self.memo = Memo()

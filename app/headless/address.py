@@ -10,7 +10,7 @@ from cutcell_viewers.camera import Camera
 
 from ..document.address import from_query, numbers_of, simple, with_scene
 from ..document.method import GRAPH, WEIGHTS, effective
-from ..document.state import State
+from ..features.state import PageState
 from .choices import Choices
 
 METHOD = (*GRAPH, *WEIGHTS)
@@ -35,7 +35,7 @@ def read_address(text: str) -> tuple[dict[str, Any], Camera | None]:
     ParameterError
         It has unknown entries, or entries that cannot be drawn.
     """
-    state = State()
+    state = PageState()
     query = with_scene(urlsplit(text).query if "?" in text else text, state)
     page, arrival, problems = from_query(query, state)
     problems += ["edits"] * ("edits" in arrival)

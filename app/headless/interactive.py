@@ -33,13 +33,15 @@ from cutcell_viewers.palette import COLORMAPS, THEMES, to_hex
 from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import MIXED
 
+from ..derive.memo import Memo
+from ..document.framing import bones_part, bounds_of, camera_part, first_joint, theme_part
 from ..document.state import State
-from ..features.character import bones_part, bounds_of, camera_part, first_joint, theme_part
-from ..features.correct.joints import in_order
+from ..editing.correct.joints import in_order
 from ..features.graph.scene import build_shown
+from ..features.inspector.facts import MAX_DISTANCES, MAX_WEIGHTS, components
 from ..features.pose.scene import clip_part, gizmo_part
-from ..features.scenes import Memo, following, resolve
-from ..features.weights.facts import MAX_DISTANCES, MAX_WEIGHTS, components
+from ..features.scenes import following, resolve
+from ..features.state import PageState
 from ..files.table_export import settings_of
 from ..widgets.changes import changes
 from ..widgets.modules import FOLDER, style
@@ -124,7 +126,7 @@ def page_in_one_file(
 def _record(rig: Rig, binding: Binding, colormap: str, progress: Progress) -> dict[str, Any]:
     """Return all messages of the page: of each joint, view and clip."""
     complete = binding.distances.of_all_joints(progress)
-    state, memo = State(rig=rig, binding=replace(binding, distances=complete)), Memo()
+    state, memo = PageState(rig=rig, binding=replace(binding, distances=complete)), Memo()
     state.colormap = colormap
     limit = MAX_CLIP_NUMBERS // max(len(rig.clips), 1)
     clips = [(shown_name(clip.name), clip_part(state, clip, limit)) for clip in rig.clips]

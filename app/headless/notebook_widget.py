@@ -11,7 +11,7 @@ from cutcell.io.interactive import Page
 from cutcell.rig import Rig
 from cutcell.runtime.notebook import is_attended
 
-from ..features.character import first_joint
+from ..document.framing import first_joint
 from ..widgets.modules import FOLDER
 
 

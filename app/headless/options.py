@@ -189,7 +189,7 @@ def _face(text: str) -> dict[str, Any]:
 
 
 def _measures(text: str) -> dict[str, Any]:
-    from ..features.distance.choices import MAX_MEASURES, MEASURES
+    from ..looks.measures import MAX_MEASURES, MEASURES
 
     names = [check_choice("measure", name, MEASURES) for name in _listed(text)]
     if len(set(names)) > MAX_MEASURES:

@@ -6,10 +6,10 @@ from cutcell.io import binary_ending
 from ..document.loading import edits_in
 from ..document.method import effective, method_of
 from ..document.session import Session
-from ..features.correct.commands import file_name, stored
+from ..editing.correct.commands import file_name, stored
 from ..files.reading import main_file
-from ..files.recipe import Recipe, command_of, script_of
-from .export import stem_of
+from .recipe import Recipe, command_of, script_of
+from .session.export import stem_of
 
 
 def copy_script(session: Session) -> None:

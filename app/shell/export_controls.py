@@ -15,12 +15,12 @@ from cutcell.runtime.display import count
 
 from ..document.session import Session
 from ..document.state import State
-from ..features.correct import commands as correct
-from ..features.layers.stack import vertices_of
+from ..editing.compute.stack import vertices_of
+from ..editing.correct import commands as correct
 from ..headless.interactive import VIEWS, interactive_page
 from ..widgets import controls as ui
-from . import export as actions
 from .export_code import copy_command, copy_script
+from .session import export as actions
 
 COMPUTED = "Computed"
 WHOSE = {"From file": True, COMPUTED: False}

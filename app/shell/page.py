@@ -19,18 +19,18 @@ from ..derive.jobs import Gate, on_its_thread
 from ..document import arrival
 from ..document.loading import load_demo, load_files
 from ..document.session import Session
+from ..features.flat.flat_scene import flat_scene
+from ..features.inspector.card import inspector
 from ..features.learn.lesson import Lesson
+from ..features.learn.lesson_card import LessonNotes, lesson_card, steps_of
+from ..features.learn.welcome import Welcome
 from ..features.pairs import results as pairs
 from ..features.pairs.choices import OpenedAudit
 from ..server.memory import collect_later, detach_from_panel
 from ..widgets import controls as ui
-from ..widgets.flat_scene import flat_scene
-from ..widgets.inspector import inspector
-from ..widgets.lesson_card import LessonNotes, lesson_card, steps_of
 from ..widgets.modules import style
-from ..widgets.welcome import Welcome
-from .begin import begin
 from .favicon import FAVICON
+from .session.begin import begin
 from .sidebar import sidebar
 from .status import STATUS_LINE, messages
 from .theme import PAGE_STYLE, THEME

@@ -11,8 +11,8 @@ from cutcell.rig import Rig
 
 from ..document.session import Session
 from ..document.state import State
+from ..editing.binding.recovery import cancel
 from ..features.check.results import go_to
-from ..features.weights.recovery import cancel
 from ..server.messages import sentence, visible_text
 from ..widgets import controls as ui
 from ..widgets.modules import style

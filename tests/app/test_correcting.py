@@ -28,19 +28,19 @@ from cutcell_app.document import arrival, loading, look
 from cutcell_app.document.address import from_query
 from cutcell_app.document.loading import restore
 from cutcell_app.document.recording import query
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import moving
-from cutcell_app.features.correct.choices import MAX_IN_ADDRESS, from_text, to_text
-from cutcell_app.features.correct.component_controls import COMPONENTS
-from cutcell_app.features.correct.joint_controls import JOINTS
-from cutcell_app.features.correct.joints import joint_rows
-from cutcell_app.features.layers import commands as layers
-from cutcell_app.features.layers.stack import painted_vertices
+from cutcell_app.editing.compute.stack import painted_vertices
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import moving
+from cutcell_app.editing.correct.component_controls import COMPONENTS
+from cutcell_app.editing.correct.joint_controls import JOINTS
+from cutcell_app.editing.correct.joints import joint_rows
+from cutcell_app.editing.layers import commands as layers
+from cutcell_app.features.inspector.facts import vertex_facts
 from cutcell_app.features.learn import steps as lesson
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.facts import vertex_facts
-from cutcell_app.shell import keys
+from cutcell_app.files.edits_file import MAX_IN_ADDRESS, from_text, to_text
 from cutcell_app.shell.export_controls import BASE, changes_of, loss
+from cutcell_app.shell.session import keys
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree

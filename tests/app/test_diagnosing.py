@@ -15,17 +15,17 @@ from cutcell.diagnosis.repair import WEIGHT_REPAIRS
 from cutcell.errors import LocatedWarning
 from cutcell.rig import TriangleMesh
 from cutcell_app.document import loading
-from cutcell_app.document.state import State
-from cutcell_app.features.character import bounds_of
+from cutcell_app.document.framing import bounds_of
+from cutcell_app.editing.binding.recovery import is_current
+from cutcell_app.editing.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.check.choices import EXPORT
 from cutcell_app.features.check.controls import CONTROLS, summary
 from cutcell_app.features.check.results import go_to, look_at, repair, take_back
-from cutcell_app.features.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.recovery import is_current
+from cutcell_app.features.state import PageState
 from cutcell_app.shell.character import faults
-from cutcell_app.shell.export import export_bound
 from cutcell_app.shell.export_controls import changes_of
+from cutcell_app.shell.session.export import export_bound
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
@@ -188,7 +188,7 @@ def test_joints_and_vertices_get_beads():
     assert set(marks) == {"finding vertices", "finding joints"}
     for mark in marks.values():
         middle = mark.points.mean(axis=0)
-        low, high = bounds_of(State(rig=rig))
+        low, high = bounds_of(PageState(rig=rig))
         assert (middle >= low - 0.1).all()
         assert (middle <= high + 0.1).all()
 

@@ -8,12 +8,12 @@ import pytest
 from cutcell.editing import Computed
 from cutcell_app.document import arrival, loading
 from cutcell_app.document.address import from_query, to_query
+from cutcell_app.editing.correct.commands import choose_file
 from cutcell_app.features.compare import results as comparing
-from cutcell_app.features.correct.commands import choose_file
-from cutcell_app.features.disagreement import results as disagreeing
-from cutcell_app.features.disagreement.controls import DISAGREEMENT
+from cutcell_app.features.compare.disagreement import results as disagreeing
+from cutcell_app.features.compare.disagreement.controls import DISAGREEMENT
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import keys
+from cutcell_app.shell.session import keys
 from cutcell_lab.disagreement import disagreement
 from cutcell_lab.metrics import deformation_error
 from tests.app.loop import settled

@@ -10,15 +10,15 @@ from cutcell_app.derive.jobs import Gate
 from cutcell_app.document import arrival, loading
 from cutcell_app.document.address import first_clip, from_query, to_query
 from cutcell_app.document.arrival import GONE
+from cutcell_app.document.framing import first_joint
 from cutcell_app.document.history import TOGETHER, History
-from cutcell_app.document.state import State
-from cutcell_app.features.character import first_joint
+from cutcell_app.document.side_by_side import standard
+from cutcell_app.editing.correct import commands as correct
 from cutcell_app.features.check.results import repair
-from cutcell_app.features.compare.choices import standard
 from cutcell_app.features.compare.results import choose
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.shell import keys
-from cutcell_app.shell.begin import begin
+from cutcell_app.features.state import PageState
+from cutcell_app.shell.session import keys
+from cutcell_app.shell.session.begin import begin
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 
@@ -41,11 +41,13 @@ def said(session):
 
 def test_an_address_brings_back_what_was_chosen():
     rig = arm_rig()
-    state = State(rig=rig, demo="robot", joint=1, panel="graph", resolution=48, surface_edges=True)
+    state = PageState(
+        rig=rig, demo="robot", joint=1, panel="graph", resolution=48, surface_edges=True
+    )
     state.param.update(cut_axis="y", cut_position=0.25, turns={1: (0, 0, 30), 0: (0, 0, 0)})
     state.param.update(clip=first_clip(rig), methods=standard(rig))  # as when it was opened
     query = to_query(state, camera=[1, 2, 3, 0, 0.5, 0])
-    choices, arrival, problems = from_query(query, State())
+    choices, arrival, problems = from_query(query, PageState())
     assert problems == []
     assert arrival == {
         "rig": "robot",
@@ -53,7 +55,7 @@ def test_an_address_brings_back_what_was_chosen():
         "turns": {1: (0, 0, 30)},
         "camera": [1, 2, 3, 0, 0.5, 0],
     }
-    other = State(
+    other = PageState(
         rig=rig, demo="robot", joint=1, turns=arrival["turns"], clip=state.clip,
         methods=state.methods, **choices,
     )  # fmt: skip
@@ -63,12 +65,12 @@ def test_an_address_brings_back_what_was_chosen():
 @pytest.mark.parametrize(("old", "new"), [("geodesics", "distance"), ("diagnosis", "check")])
 def test_addresses_with_the_former_names_of_panels_open(old, new):
     for name in (old, new):
-        choices, _, problems = from_query(f"panel={name}", State())
+        choices, _, problems = from_query(f"panel={name}", PageState())
         assert (choices["panel"], problems) == (new, [])
 
 
 def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():
-    state = State(demo="robot", dark=True, moving=True, playing=True, busy=True, stage="graph")
+    state = PageState(demo="robot", dark=True, moving=True, playing=True, busy=True, stage="graph")
     state.node = 7
     assert to_query(state) == "rig=robot&panel=weights"
 
@@ -81,7 +83,7 @@ def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():
      "resolution=1e99"],
 )  # fmt: skip
 def test_what_an_address_says_wrongly_is_named(query):
-    choices, arrival, problems = from_query(query, State())
+    choices, arrival, problems = from_query(query, PageState())
     assert (choices, arrival) == ({}, {})
     assert problems == [query]
 

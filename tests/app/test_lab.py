@@ -11,13 +11,13 @@ from cutcell.editing import Edits, Filled, Layer
 from cutcell.runtime.progress import silent
 from cutcell_app.document import loading
 from cutcell_app.document.address import to_query
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.distance.choices import CONVERGED, RESOLUTIONS
-from cutcell_app.features.lab import results as lab
-from cutcell_app.features.lab.choices import OPTIONS, VALUES
-from cutcell_app.features.lab.controls import FIELDS, SWEEP, about, plots, table
-from cutcell_app.features.lab.curves import plot
-from cutcell_app.features.lab.rows import Setting, in_units, number, settings_of
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.features.compare.lab import results as lab
+from cutcell_app.features.compare.lab.choices import OPTIONS, VALUES
+from cutcell_app.features.compare.lab.controls import FIELDS, SWEEP, about, plots, table
+from cutcell_app.features.compare.lab.curves import plot
+from cutcell_app.features.compare.lab.rows import Setting, in_units, number, settings_of
+from cutcell_app.looks.measures import CONVERGED, RESOLUTIONS
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.curves import Curves
 from cutcell_app.widgets.follow import Reader

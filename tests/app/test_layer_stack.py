@@ -12,7 +12,7 @@ from cutcell import Computed, Edits, Filled, FromFile, Layer, Locked, Mask, Pain
 from cutcell.editing.layers import apply_layers
 from cutcell.editing.layers.sources import RigSources
 from cutcell_app.document.history import History
-from cutcell_app.features.layers import stack
+from cutcell_app.editing.compute import stack
 from tests.viewers.arm import arm_rig
 
 NAMES = arm_rig().skeleton.names

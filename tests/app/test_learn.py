@@ -5,11 +5,12 @@ import pytest
 
 from cutcell.errors import FileError
 from cutcell_app.document import arrival, loading
-from cutcell_app.document.state import PANELS
-from cutcell_app.features.brush.choices import selected
-from cutcell_app.features.brush.strokes import select
-from cutcell_app.features.learn.checked import read_checked
+from cutcell_app.document.selection import selected
+from cutcell_app.editing.brush.strokes import select
+from cutcell_app.features.checked import read_checked
+from cutcell_app.features.flat.flat_scene import flat_scene
 from cutcell_app.features.learn.lesson import FOLDER, KINDS, built_in, read
+from cutcell_app.features.learn.lesson_card import lesson_card
 from cutcell_app.features.learn.plots import plot_of
 from cutcell_app.features.learn.steps import (
     NO_PATH,
@@ -26,12 +27,11 @@ from cutcell_app.features.learn.steps import (
 )
 from cutcell_app.features.learn.writing import this_view, written
 from cutcell_app.features.scenes import resolve
+from cutcell_app.features.state import PANELS
 from cutcell_app.headless.lesson_page import Recording
-from cutcell_app.shell import keys
-from cutcell_app.shell.begin import begin
 from cutcell_app.shell.character import about
-from cutcell_app.widgets.flat_scene import flat_scene
-from cutcell_app.widgets.lesson_card import lesson_card
+from cutcell_app.shell.session import keys
+from cutcell_app.shell.session.begin import begin
 from cutcell_assets import DEMOS, demo_path
 from cutcell_viewers.camera import Camera
 from tests.app.small import small_rig

@@ -12,12 +12,12 @@ from cutcell import Edits, JointEdit
 from cutcell.errors import SkeletonError
 from cutcell.rig import Skeleton, TriangleMesh
 from cutcell_app.document import loading
-from cutcell_app.editing import cross_section_centre
-from cutcell_app.features.correct import moving
-from cutcell_app.features.correct.choices import from_text, to_text
-from cutcell_app.features.correct.moving_controls import PLACE
+from cutcell_app.editing.compute import cross_section_centre
+from cutcell_app.editing.correct import moving
+from cutcell_app.editing.correct.moving_controls import PLACE
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import keys
+from cutcell_app.files.edits_file import from_text, to_text
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.controls import column, draw
 from tests.app.loop import settled
 from tests.viewers.arm import WORLD, arm_rig

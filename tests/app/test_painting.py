@@ -7,25 +7,21 @@ import pytest
 from cutcell import Edits, Layer, Locked, Mask
 from cutcell_app.document import loading
 from cutcell_app.document.address import from_query
-from cutcell_app.editing import Brush, paint_weights
-from cutcell_app.features.brush import controls as brush_controls
-from cutcell_app.features.brush import strokes as brush
-from cutcell_app.features.brush.choices import MIN_RADIUS, MIN_STRENGTH, selected
-from cutcell_app.features.brush.strokes import radius_of
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct.choices import (
-    MAX_IN_ADDRESS,
-    MAX_VERTICES,
-    to_text,
-    vertices_named,
-)
-from cutcell_app.features.layers.commands import STEPS, in_steps
-from cutcell_app.features.layers.stack import painted_vertices
+from cutcell_app.document.selection import selected
+from cutcell_app.editing.brush import controls as brush_controls
+from cutcell_app.editing.brush import strokes as brush
+from cutcell_app.editing.brush.choices import MIN_RADIUS, MIN_STRENGTH
+from cutcell_app.editing.brush.strokes import radius_of
+from cutcell_app.editing.compute import Brush, paint_weights
+from cutcell_app.editing.compute.stack import painted_vertices
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.layers.commands import STEPS, in_steps
+from cutcell_app.editing.select.controls import SELECTION
 from cutcell_app.features.pose import results as pose
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.select.controls import SELECTION
-from cutcell_app.features.weights.scene import painted_colors
-from cutcell_app.shell import keys
+from cutcell_app.files.edits_file import MAX_IN_ADDRESS, MAX_VERTICES, to_text, vertices_named
+from cutcell_app.looks.weights import painted_colors
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.controls import draw
 from tests.app.loop import check_bound_as_by_core, settled
 from tests.viewers.arm import arm_rig
@@ -84,7 +80,7 @@ def test_a_stroke_is_what_the_core_paints_and_one_step_to_undo(painter, loop, mo
 
 
 def test_the_brush_prepares_smoothing_before_the_first_stroke(painter, loop, monkeypatch):
-    monkeypatch.setattr("cutcell_app.editing.stroke.cotangent_laplacian", None)
+    monkeypatch.setattr("cutcell_app.editing.compute.stroke.cotangent_laplacian", None)
     stroke(painter, MIDDLE, mode="smooth")
     settled(painter, loop)
     assert painter.state.edits

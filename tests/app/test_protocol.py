@@ -3,7 +3,7 @@
 import ast
 import re
 
-from cutcell_app.shell.view_parts import PARTS
+from cutcell_app.shell.session.view_parts import PARTS
 from cutcell_app.widgets.modules import FOLDER
 from cutcell_app.widgets.protocol import FROM_BROWSER, FROM_WIDGETS, TO_BROWSER
 from tests.test_layers import ROOT

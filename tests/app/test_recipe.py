@@ -16,10 +16,10 @@ from cutcell.editing import Edits, Filled, FromFile, JointEdit, Layer, Mask, Pai
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell_app.document import loading
 from cutcell_app.document.method import options_of
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.files.recipe import Recipe, command_of, script_of
-from cutcell_app.shell.export import export_bound
+from cutcell_app.editing.correct import commands as correct
 from cutcell_app.shell.export_code import copy_command, copy_script
+from cutcell_app.shell.recipe import Recipe, command_of, script_of
+from cutcell_app.shell.session.export import export_bound
 from tests.cutcell.cli.conftest import run
 from tests.viewers.arm import arm_rig
 

@@ -8,20 +8,20 @@ import pytest
 
 from cutcell import Edits, Layer, Locked, Mask
 from cutcell_app.document import loading
-from cutcell_app.editing import operations as ops
-from cutcell_app.editing.selected import Selected
-from cutcell_app.features.brush.choices import selected
-from cutcell_app.features.brush.strokes import select
-from cutcell_app.features.correct.commands import choose_file, correct
-from cutcell_app.features.layers.commands import STEPS
+from cutcell_app.document.selection import selected
+from cutcell_app.editing.brush.strokes import select
+from cutcell_app.editing.compute import operations as ops
+from cutcell_app.editing.compute.selected import Selected
+from cutcell_app.editing.correct.commands import choose_file, correct
+from cutcell_app.editing.layers.commands import STEPS
+from cutcell_app.editing.select import operations, selections
+from cutcell_app.editing.select.controls import SELECTION, WEIGHT_SCALE
+from cutcell_app.editing.select.operations import OPERATIONS
+from cutcell_app.editing.select.selections import SELECTIONS
+from cutcell_app.editing.select.table import ROWS
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.select import operations, selections
-from cutcell_app.features.select.controls import SELECTION, WEIGHT_SCALE
-from cutcell_app.features.select.histogram import BARS, bar_of
-from cutcell_app.features.select.operations import OPERATIONS
-from cutcell_app.features.select.selections import SELECTIONS
-from cutcell_app.features.select.table import ROWS
-from cutcell_app.shell import keys
+from cutcell_app.looks.histogram import BARS, bar_of
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.weights_table import Histogram, WeightsTable
 from tests.app.loop import settled

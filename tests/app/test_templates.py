@@ -6,18 +6,13 @@ import pytest
 
 import cutcell
 from cutcell_app.document import loading
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import moving, templates
-from cutcell_app.features.correct.choices import to_text
-from cutcell_app.features.correct.joint_controls import JOINTS
-from cutcell_app.features.correct.template_controls import (
-    CHANGED,
-    NONE,
-    SKELETON,
-    chosen_template,
-)
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import moving, templates
+from cutcell_app.editing.correct.joint_controls import JOINTS
+from cutcell_app.editing.correct.template_controls import CHANGED, NONE, SKELETON, chosen_template
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import export, keys
+from cutcell_app.files.edits_file import to_text
+from cutcell_app.shell.session import export, keys
 from cutcell_app.widgets.controls import draw
 from tests.app.loop import settled
 from tests.viewers.arm import arm_rig, bare_arm

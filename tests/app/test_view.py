@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell_app.features.character import camera_part, theme_part
+from cutcell_app.document.framing import camera_part, theme_part
 from cutcell_app.widgets.changes import changes
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import framing

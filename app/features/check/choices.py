@@ -9,8 +9,8 @@ from cutcell.diagnosis import Finding
 from cutcell.editing import Edits
 from cutcell.rig import Rig
 
-from ..layers.stack import part_layers
-from ..panel import Panel
+from ...document.state import Panel
+from ...editing.compute.stack import part_layers
 
 EXPORT = "export:"
 """Before the code of a finding about the weights that an export contains."""

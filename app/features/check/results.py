@@ -11,13 +11,13 @@ from cutcell_viewers.finding_scene import camera_on
 
 from ...derive.derived import Derived
 from ...derive.jobs import DESCRIBING
+from ...document.framing import bounds_of
 from ...document.look import set_camera
 from ...document.method import GRAPH, method_of
 from ...document.session import Session
 from ...document.state import State
-from ..character import bounds_of
-from ..correct.commands import swap
-from ..layers.stack import with_base
+from ...editing.compute.stack import with_base
+from ...editing.correct.commands import swap
 from .choices import EXPORT, Repair
 
 

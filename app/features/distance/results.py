@@ -7,9 +7,9 @@ from cutcell_lab.baselines.measured_distance import measure_distance
 from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
-from ..character import has_field
-from .choices import CONVERGED
-from .measures import WITH_RESOLUTION, method_of
+from ...looks.character import has_field
+from ...looks.measures import CONVERGED, method_of
+from .measures import WITH_RESOLUTION
 from .scene import farthest, wants_field
 
 WAVE_SECONDS = 6.0

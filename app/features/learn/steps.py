@@ -9,21 +9,18 @@ from cutcell.editing import edited_rig
 from cutcell_viewers.camera import Camera
 
 from ...document.address import defaults, from_query
+from ...document.edits import changed_only, changes
 from ...document.history import History
 from ...document.loading import load_demo, motion, revisit
 from ...document.look import set_camera
 from ...document.recording import begin, restoring
+from ...document.selection import selected
 from ...document.session import Session
-from ..brush.choices import BRUSH, selected
-from ..compare.choices import SINGLE, standard
-from ..compare.scene import shown_title, weights_of
-from ..correct.choices import changed_only, changes
-from ..select.choices import SELECT
+from ...document.side_by_side import SINGLE, standard
+from ...looks.methods import shown_title, weights_of
 from .lesson import Step
 from .sliders import slide, sliders_of
 
-TOOLS = BRUSH | SELECT
-"""What a step begins without: a selection, say, is paint of the step before."""
 MAX_ANSWER = 200
 """Letters of an answer."""
 NO_PATH = "a point that no path reaches"
@@ -32,9 +29,13 @@ NO_PATH = "a point that no path reaches"
 
 def watch(session: Session) -> None:
     """Take clicks on the body and on bones for answers where a step asks for them."""
-    follow, unused = session.state.param.watch, {n: session.state.param[n].default for n in TOOLS}
+    state = session.state
+    follow = state.param.watch
+    # A selection, say, is paint of the step before.
+    unused = {name: state.param[name].default for name in state.tools}
     follow(lambda *events: _answer_by_click(session, "vertex"), "vertex")
     follow(lambda *events: _answer_by_click(session, "joint"), "joint")
+    follow(lambda event: answer(session, event.new), "acted", onlychanged=False)
     follow(lambda *events: _prepare(session), "binding")
     follow(lambda *events: session.state.param.update(**unused), "step")
 
@@ -47,7 +48,7 @@ def go(session: Session, index: int) -> None:
         return
     if state.step < 0 and state.rig is not None:
         camera = None if session.view.at_home else session.view.camera
-        tools = {name: getattr(state, name) for name in TOOLS}
+        tools = {name: getattr(state, name) for name in state.tools}
         session.before_lesson = session.history, session.history.now, camera, tools
     step = state.lesson[index]
     demo = step.demo or state.demo
@@ -235,33 +236,6 @@ def branch_weights(
     table = weights if weights is not None else state.weights if file is None else file
     total: NDArray[np.float64] = table[:, below].sum(1)
     return total
-
-
-def asks_to_act(state: Any) -> bool:
-    """Return whether the step waits for what a person does in the picture."""
-    return task(state) == "open"
-
-
-def task(state: Any) -> str:
-    """Return "open" or "done" where the step asks for an act in the picture, else ""."""
-    step = state.lesson_step
-    if step is None or step.answer.kind != "act":
-        return ""
-    return "done" if state.step in state.answers else "open"
-
-
-def points_out(state: Any) -> bool:
-    """Return whether the chosen vertex needs no card: the lesson chose it, or waits for an answer.
-
-    The card of a vertex would give the answer away.
-    """
-    step = state.lesson_step
-    if step is None or state.vertex is None:
-        return False
-    if state.step not in state.answers:
-        return True
-    _, arrival, _ = from_query(step.scene(True), state)
-    return bool(arrival.get("vertex") == state.vertex)
 
 
 def _answer_by_click(session: Session, kind: str) -> None:

