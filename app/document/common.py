@@ -6,6 +6,8 @@ from typing import Any
 
 import param
 
+from cutcell_viewers.palette import COLORMAPS
+
 CUTS = ("auto", "off", "x", "y", "z", "free")
 """Cuts through the body; a free plane has any direction, and auto is z on the panel graph."""
 
@@ -42,6 +44,12 @@ class Common(param.Parameterized):
         default="open",
         objects={"Open": "open", "Distance": "field", "Winding": "winding"},
         doc="The same, of the graph.",
+    )
+    colormap: param.Selector[str] = param.Selector(
+        default="default",
+        objects={name.capitalize(): name for name in COLORMAPS},
+        label="Colour map",
+        doc="Of distances, depths and the weights of one bone: one of `palette.COLORMAPS`.",
     )
 
     actors = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
-from cutcell_viewers.palette import COLORMAPS
-
 from ...document.state import Panel
 from ...looks.measures import CONVERGED, MAX_MEASURES, MEASURES, RESOLUTIONS
 
@@ -26,12 +24,6 @@ class Choices(param.Parameterized):
     """Which distances are seen."""
 
     field: Any = param.Parameter(None, doc="Distance of the chosen bone at every graph node.")
-    colormap: param.Selector[str] = param.Selector(
-        default="default",
-        objects={name.capitalize(): name for name in COLORMAPS},
-        label="Colour map",
-        doc="Of distances, depths and the weights of one bone: one of `palette.COLORMAPS`.",
-    )
     starts = param.Boolean(False, label="Sources")
     path = param.Boolean(True, label="Shortest path from the clicked vertex")
     front = param.Number(
