@@ -212,8 +212,8 @@ def _octahedra(
     ring = start + along * np.minimum(0.14 * length, 1.5 * radius)
     wide = radius + 1.4 * wider[:, None]
     around = [ring + wide * d for d in (side, other, -side, -other)]
-    more = 2 * wider[:, None] * along
-    return np.stack([start - more, *around, end + 2 * more], axis=1)
+    overhang = 2 * wider[:, None] * along
+    return np.stack([start - overhang, *around, end + 2 * overhang], axis=1)
 
 
 def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> Actor:

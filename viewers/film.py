@@ -23,9 +23,9 @@ from .order import FILMS, FRAMES, PICTURES, Order, ground
 from .studio import Studio, box_of, points_of
 
 TURN_SECONDS = 6.0
-LONGEST = 20.0
+MAX_SECONDS = 20.0
 """Longest film of a motion, in seconds."""
-PROBED = 24
+MAX_POSES = 24
 """Largest number of poses that are sampled to frame a motion."""
 
 
@@ -99,15 +99,15 @@ def _camera(order: Order, studio: Studio) -> Camera:
         return camera
     if sees(camera, points_of(order.description, _poses(order)), studio.shape):
         return camera
-    way = np.array(camera.position) - np.array(camera.focal_point)
-    return studio.camera(tuple(way.tolist()), box_of(order.description, _poses(order)))
+    direction = np.array(camera.position) - np.array(camera.focal_point)
+    return studio.camera(tuple(direction.tolist()), box_of(order.description, _poses(order)))
 
 
 def _poses(order: Order) -> list[Any]:
     """Return the poses of an order, or some of them; None for rest."""
     if order.motion is None:
         return [order.description.pose]
-    probed = min(len(order.motion.times), PROBED)
+    probed = min(len(order.motion.times), MAX_POSES)
     return list(order.motion.sample(np.linspace(0, order.motion.duration, probed)))
 
 
@@ -118,7 +118,7 @@ def _length(order: Order) -> float:
     if order.turntable:
         # Whole rounds of the motion, so that the film closes.
         return duration * max(round(TURN_SECONDS / duration), 1) if duration else TURN_SECONDS
-    return min(max(duration, 0.1), LONGEST)
+    return min(max(duration, 0.1), MAX_SECONDS)
 
 
 def _write_picture(path: Path, pixels: NDArray[np.uint8]) -> None:

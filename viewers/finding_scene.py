@@ -106,11 +106,11 @@ def camera_on_marks(
     low, high = (end(np.concatenate(points), axis=0) for end in (np.min, np.max))
     bounds = description.bounds if bounds is None else bounds
     least = NEAREST * float(np.linalg.norm(bounds[1] - bounds[0]))
-    more = np.maximum(least - (high - low), 0) / 2
+    padding = np.maximum(least - (high - low), 0) / 2
     middle = bounds.mean(axis=0)
     side = (low + high) / 2 - middle
     if direction is None:
         # From their side, and still from the front, and never straight from above.
         towards = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
         direction = tuple(towards.tolist())
-    return framing(np.stack([low - more, high + more]), aspect, direction)
+    return framing(np.stack([low - padding, high + padding]), aspect, direction)

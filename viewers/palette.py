@@ -177,13 +177,13 @@ def _of_matplotlib(name: str) -> NDArray[np.float64]:
 
 
 def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
-    """Return colours (n, 3), from 0 to 1, as an eye sees them: one of `EYES`."""
+    """Simulate how an eye, one of `EYES`, sees colours (n, 3) from 0 to 1."""
     linear = _to_linear(np.asarray(colors, float)) @ np.array(EYES[eye]).T
     return np.clip(_from_linear(linear), 0, 1)
 
 
 def differences(colors: ArrayLike, eyes: Iterable[str] = tuple(EYES)) -> NDArray[np.float64]:
-    """Return the distances (n, n) of colours (n, 3) in OKLab, to the eye that sees them least."""
+    """Return the distances (n, n) of colours (n, 3) in OKLab: the smallest over some eyes."""
     labs = np.stack([_srgb_to_oklab(as_seen(colors, eye)) for eye in eyes])
     return np.linalg.norm(labs[:, :, None] - labs[:, None], axis=3).min(axis=0)
 

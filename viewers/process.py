@@ -83,7 +83,7 @@ class DrawingProcess:
                 answer, is_last = self._await_answer(progress)
             except (OSError, EOFError):
                 process.wait()
-                reason = self._last_complaint() or f"exit code {process.returncode}"
+                reason = self._last_error_line() or f"exit code {process.returncode}"
                 self._end()
                 require_opengl()
                 raise RuntimeError(f"the picture could not be drawn: {reason}") from None
@@ -111,12 +111,12 @@ class DrawingProcess:
         self._timer.start()
 
     def _start(self) -> Any:
-        self._complaints = TemporaryFile()  # noqa: SIM115 (never full, as a pipe may be)
+        self._errors = TemporaryFile()  # noqa: SIM115 (never full, as a pipe may be)
         self._process = subprocess.Popen(
             [sys.executable, "-c", f"import {__name__} as drawing; drawing.main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=self._complaints,
+            stderr=self._errors,
             env=python_environment(),
         )
         self._messages = Queue()
@@ -137,9 +137,9 @@ class DrawingProcess:
                     return message[1:]
                 status = message[1:]
 
-    def _last_complaint(self) -> str:
-        self._complaints.seek(0)
-        lines = self._complaints.read().decode(errors="replace").strip().splitlines()
+    def _last_error_line(self) -> str:
+        self._errors.seek(0)
+        lines = self._errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else ""
 
     def _end(self) -> None:
@@ -149,7 +149,7 @@ class DrawingProcess:
             process.wait()
             with suppress(OSError):
                 process.stdin.close()
-            self._complaints.close()
+            self._errors.close()
 
 
 def draw_isolated(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -186,7 +186,7 @@ def _can_draw() -> bool:
 
 
 def _read(stream: IO[bytes], messages: Queue[Any]) -> None:
-    """Hand on pickled messages until the stream ends, then None."""
+    """Queue pickled messages until the stream ends, then None."""
     with stream, suppress(EOFError, OSError, pickle.UnpicklingError):
         while True:
             messages.put(pickle.load(stream))

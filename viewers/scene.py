@@ -1,4 +1,4 @@
-"""A description drawn by PyVista: the one scene that pictures are made from."""
+"""Drawing of a description by PyVista."""
 
 import os
 import sys

@@ -138,7 +138,7 @@ def file_axis(rig: Rig, axis: str) -> tuple[int, int]:
 def _joined(
     rays: RaySlice, box: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Join neighbouring segments that are alike, and leave out what is far from the body."""
+    """Join similar neighbouring segments, and drop segments far from the body."""
     middle = (rays.low + rays.high) / 2
     near = ((middle >= box[0]) & (middle <= box[1])).all(axis=1)
     low, high, winding, is_inside = (

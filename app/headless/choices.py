@@ -80,7 +80,7 @@ class Choices:
 
 
 def state_of(rig: Rig, choices: Choices) -> State:
-    """Return the page's state with what is chosen, of which nothing is computed yet.
+    """Return the page's state for some choices, without any result yet.
 
     Raises
     ------

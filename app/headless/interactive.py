@@ -109,7 +109,7 @@ def interactive_page(
 def page_in_one_file(
     script: str, title: str, content: str, packed: Packed, scenes: dict[str, Any]
 ) -> str:
-    """Return a page without a server: its content, scripts, vtk.js and what was recorded."""
+    """Return a page without a server: its content, scripts, vtk.js and recorded scenes."""
     template = Template((FOLDER / "one_file.html").read_text(encoding="utf-8"))
     return template.substitute(
         script=script,

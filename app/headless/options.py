@@ -126,7 +126,7 @@ LAYERS = {
 }
 """Names of the layers of the graph as options, and in the state."""
 
-LARGEST = 8192
+MAX_SIDE = 8192
 """Largest side of a picture in pixels."""
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 FACES = {"open": "open", "distance": "field", "winding": "winding"}
@@ -158,10 +158,10 @@ def read_size(text: str | None) -> tuple[int, int] | None:
     """Return a width and a height; None without a text."""
     if not text:
         return None
-    form = f"width x height in pixels, 16 to {LARGEST} each, such as 1600x1200"
+    form = f"width x height in pixels, 16 to {MAX_SIDE} each, such as 1600x1200"
     sides = _groups("size", text.strip(), r"(\d{1,5})\s*[x×]\s*(\d{1,5})", form)
     width, height = map(int, sides)
-    if not 16 <= min(width, height) <= max(width, height) <= LARGEST:
+    if not 16 <= min(width, height) <= max(width, height) <= MAX_SIDE:
         raise ParameterError(f'size must be {form}, not "{text}"')
     return width, height
 
@@ -219,8 +219,8 @@ def _slice(text: str) -> dict[str, Any]:
         "slice", text, r"([xyz])(?:=([\d.]+))?(?::([xyz]))?",
         "an axis, and may have a position and the axis of its rays, such as z, z=0.5 or z=0.5:x",
     )  # fmt: skip
-    place = {"slicing": True, "slice_axis": axis, **_part("slice", "slice_position", at)}
-    return {**place, **({"slice_rays": rays} if rays else {})}
+    choices = {"slicing": True, "slice_axis": axis, **_part("slice", "slice_position", at)}
+    return {**choices, **({"slice_rays": rays} if rays else {})}
 
 
 def _part(name: str, choice: str, text: str | None) -> dict[str, Any]:
