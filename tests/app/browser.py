@@ -74,11 +74,11 @@ STEADY = """
 ON_DEMAND = "window.drawsOnDemand = true"
 
 DRAW = """async () => {
+  if (!window.drawsOnDemand) { return }
   await new Promise(requestAnimationFrame)
-  const {drawsOnDemand} = window
   window.drawsOnDemand = false
   __cutcell.renderer.draw(Boolean(__cutcell.playing), false)
-  window.drawsOnDemand = drawsOnDemand
+  window.drawsOnDemand = true
 }"""
 
 SCALE = 0.5
@@ -217,16 +217,22 @@ visits: weakref.WeakSet[Visit] = weakref.WeakSet()
 
 
 class Visit:
-    """One person's page, as a person sees it or, `smooth` is false, with fewer pixels to draw."""
+    """One person's page, as a person sees it or, unless it is smooth, with fewer pixels to draw.
 
-    def __init__(self, browser: Browser, url: str, smooth: bool = False, **context: Any) -> None:
+    A page that is not `smooth` draws only when a test looks at it, unless `draws` says otherwise.
+    """
+
+    def __init__(
+        self, browser: Browser, url: str, smooth: bool = False, draws: bool = False, **context: Any
+    ) -> None:
         size = {"width": 1100, "height": 720}
         scale = 1 if smooth else SCALE
         self.context = browser.new_context(
             **{"viewport": size, "accept_downloads": True, "device_scale_factor": scale, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
-        self.context.add_init_script(STEADY if smooth else STEADY + ONE_SAMPLE + ON_DEMAND)
+        parts = (STEADY, "" if smooth else ONE_SAMPLE, "" if smooth or draws else ON_DEMAND)
+        self.context.add_init_script("".join(parts))
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
