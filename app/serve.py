@@ -23,7 +23,7 @@ from cutcell_lab.dataset import load_audit
 from cutcell_viewers.description import Actor
 
 from .derive.processes import get_ready
-from .features.learn.checked import read_checked
+from .features.checked import read_checked
 from .features.learn.lesson import Lesson
 from .features.pairs.choices import OpenedAudit
 from .files.upload_cache import UPLOADS

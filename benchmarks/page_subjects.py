@@ -14,9 +14,9 @@ import trimesh
 import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
-from cutcell_app.document.state import State
-from cutcell_app.features.character import camera_part
+from cutcell_app.document.framing import camera_part
 from cutcell_app.features.pose.scene import clip_part
+from cutcell_app.features.state import PageState
 from cutcell_app.widgets.view import SceneView
 from cutcell_lab.benchmarks.shapes import chain
 from cutcell_viewers.camera import framing
@@ -118,7 +118,7 @@ def cutcell_subject(material: Material) -> Subject:
             present(actors={**current.actors, "body": replace(current.actors["body"], **changed)})
 
         def play(playing: bool) -> None:
-            state = State(rig=material.rig)
+            state = PageState(rig=material.rig)
             view.send(clip=clip_part(state, material.clip) if playing else None, playing=playing)
 
         subject.color = lambda turn: put(scalars=material.fields[turn % CHANGES])

@@ -6,8 +6,6 @@ from typing import Any
 
 import param
 
-from .panels import PANELS
-
 CUTS = ("auto", "off", "x", "y", "z", "free")
 """Cuts through the body; a free plane has any direction, and auto is z on the panel graph."""
 
@@ -15,7 +13,7 @@ CUTS = ("auto", "off", "x", "y", "z", "free")
 class Common(param.Parameterized):
     """The part of the state that belongs to no panel."""
 
-    panel: param.Selector[str] = param.Selector(default="weights", objects=list(PANELS))
+    panel: str  # a parameter of the class that has all panels
 
     demo = param.String("", doc="Id of the demo character that was chosen; else empty.")
     rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")

@@ -1,12 +1,9 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
-from typing import Any
-
 from cutcell_viewers.camera import Camera, framing
 
-from ..features.brush.choices import BRUSH
-from ..features.character import bounds_of, camera_part, theme_of, theme_part
-from ..features.scenes import resolve
+from ..messages.received import Pick, PickNode, PickVertex
+from .framing import bounds_of, camera_part, theme_of, theme_part
 from .session import Session
 from .state import UNSEEN
 
@@ -14,13 +11,13 @@ from .state import UNSEEN
 def watch(session: Session) -> None:
     """Connect the view to the state, and the state to picks in the view."""
     state, view = session.state, session.view
-    drawn = {"brush", "brush_selection"}
-    watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
+    hidden = UNSEEN | {name for name in state.tools if name.startswith("brush_")}
+    watched = [name for name in state.param if name not in hidden - {"brush_selection"}]
     state.param.watch(lambda *events: show(session), watched)
     state.param.watch(lambda *events: show_theme(session), "dark")
-    view.listen("pick", lambda message: pick(session, int(message["joint"])))
-    view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
-    view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
+    view.listen(Pick, lambda message: pick(session, message.joint))
+    view.listen(PickVertex, lambda message: pick_vertex(session, message.vertex, message.view))
+    view.listen(PickNode, lambda message: pick_node(session, message.node))
     state.param.watch(
         lambda *events: pick_node(session, None),
         ["rig", "binding", "built_graph", "easy_graph", "graph_resolution"],
@@ -56,16 +53,12 @@ def pick_vertex(session: Session, vertex: int | None, view: int = 0) -> None:
     state.param.update(vertex=vertex, node=None, clicked_method=method)
 
 
-def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
-    pick_vertex(session, int(message["vertex"]), int(message.get("view", 0)))
-
-
 def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
     view, home = session.view, framing(bounds_of(session.state), 1.2)
     view.camera, view.at_home = camera or home, camera is None
-    now = {} if camera is None else {"now": camera_part(camera)}
-    view.send(camera={**camera_part(home), **now})
+    now = None if camera is None else camera_part(camera)
+    view.send(camera={**camera_part(home), "now": now})
 
 
 def show(session: Session) -> None:
@@ -73,10 +66,10 @@ def show(session: Session) -> None:
     state, view, memo = session.state, session.view, session.memo
     if state.quick:
         session.work.cancel("scene")
-        view.present(resolve(state, memo))
+        view.present(session.resolve(state, memo))
     else:
         now = state.snapshot()
-        session.work.newest("scene", lambda progress: resolve(now, memo), view.present)
+        session.work.newest("scene", lambda progress: session.resolve(now, memo), view.present)
 
 
 def show_theme(session: Session) -> None:

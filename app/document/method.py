@@ -98,3 +98,7 @@ def options_of(method: Method) -> dict[str, Any]:
         return options | {n: value for n, value in values.items() if value != getattr(base, n)}
 
     return min(map(differences, METHODS), key=len)
+
+
+READABLE = 40
+"""Lattice cells along the longest side of a graph that is easy to read on a screen."""

@@ -1,17 +1,19 @@
-"""Everything that a person can choose on the page, and what was computed for it.
+"""State of the page, without the choices that features declare; it knows no widget and no layout.
 
-One object a browser session, made of the choices of each feature. It knows no widget and no layout.
+`features.state.PageState` adds those: one object a browser session.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import param
 
+from . import edits
 from .common import UNSEEN, Common
-from .panels import MODULES, PANELS
 
-__all__ = ["PANELS", "UNSEEN", "State"]
+__all__ = ["UNSEEN", "Panel", "State"]
 
 QUICK_MESH = 60_000
 QUICK_GRAPH = 400_000
@@ -22,23 +24,75 @@ A_JOINT = 10
 """As many vertices take the time to describe that one joint takes."""
 
 
-_CHOICES: Any = tuple(module.Choices for module in MODULES.values() if hasattr(module, "Choices"))
+@dataclass(frozen=True)
+class Panel:
+    """A panel of the page, registered by the name of its folder; see `features/__init__.py`.
+
+    Parameters
+    ----------
+    title : str
+        One word.
+    icon : str
+        Content of an SVG of 24 by 24 units; it is drawn as lines, in the text's colour.
+    poses : bool
+        Whether the character moves here; on all others it rests.
+    cuts : bool
+        Whether the character can be cut.
+    paints : bool
+        Whether the brush works here.
+    works_without_skeleton : bool
+    is_rendered : bool
+        Whether `cutcell render` draws it.
+    needs_audit : bool
+        Whether it is offered for an audit alone.
+    """
+
+    title: str
+    icon: str
+    poses: bool = False
+    cuts: bool = False
+    paints: bool = False
+    works_without_skeleton: bool = False
+    is_rendered: bool = True
+    needs_audit: bool = False
 
 
-class State(*_CHOICES, Common):  # type: ignore[misc]
-    """State of the page."""
+class State(edits.Choices, Common):
+    """State of the page.
+
+    Attributes
+    ----------
+    panels : dict of Panel
+        By the name in the state, in the address and on the command line, in their order.
+    tools : frozenset of str
+        Parameters of tools, such as the brush: they are no choices, and undo does not change them.
+    """
+
+    panels: ClassVar[Mapping[str, Panel]] = {}
+    tools: ClassVar[frozenset[str]] = frozenset()
+
+    if TYPE_CHECKING:  # the parameters of features
+
+        def __getattr__(self, name: str) -> Any: ...
+
+        def __setattr__(self, name: str, value: Any) -> None: ...
+
+    @property
+    def open_panel(self) -> Panel:
+        """The record of the panel that is open."""
+        return self.panels[self.panel]
 
     @property
     def is_panel_usable(self) -> bool:
         """Whether the panel has anything to show of the character: most need a skeleton."""
-        return not self.bare or PANELS[self.panel].works_without_skeleton
+        return not self.bare or self.open_panel.works_without_skeleton
 
     @property
     def quick(self) -> bool:
         """Whether the open character is small enough to be described at once."""
         if self.rig is None:
             return True
-        if self.cut_across != "off" and PANELS[self.panel].cuts:
+        if self.cut_across != "off" and self.open_panel.cuts:
             return False  # the face of a cut takes some tenths of a second
         mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
         mesh_size = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints

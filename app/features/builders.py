@@ -2,14 +2,15 @@
 
 from collections.abc import Callable
 from functools import partial
-from importlib import import_module
 from typing import Any
 
 from ..document.session import Session
-from ..document.state import PANELS
 from ..widgets.table import draw
+from . import modules
+from .state import PANELS
+
+_MODULES = modules("controls")
 
 BUILDERS: dict[str, Callable[[Session], Any]] = {
-    panel: partial(draw, row=import_module(f"{__package__}.{panel}.controls").CONTROLS, panel=panel)
-    for panel in PANELS
+    panel: partial(draw, row=_MODULES[panel].CONTROLS, panel=panel) for panel in PANELS
 }

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
 from typing import Any
 
 from cutcell_viewers.description import Actor, Description, Legend
@@ -10,12 +9,14 @@ from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
 from cutcell_viewers.skin import Skin
 
 from ..derive.memo import Memo
-from ..document.state import PANELS, State
+from ..document.state import State
+from . import modules
+from .state import PANELS
 
 __all__ = ["SCENES", "Memo", "following", "resolve"]
 
 SCENES: dict[str, Callable[[State, Memo], Description]] = {
-    panel: import_module(f"{__package__}.{panel}.scene").scene for panel in PANELS
+    panel: module.scene for panel, module in modules("scene").items()
 }
 """The scene of each panel, for a state with a rig."""
 
@@ -53,7 +54,7 @@ def following(state: State, memo: Memo | None = None) -> Description:
         skin = memo("skin", inputs, lambda: Skin.of_weights(state.weights))
         actors |= {name: replace(actors[name], skin=skin) for name in bodies}
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
-    if not PANELS[state.panel].poses:
+    if not state.open_panel.poses:
         for name in actors:
             if name.startswith(("body", "attachment")):
                 actors[name] = replace(actors[name], visible=True, opacity=1.0)

@@ -1,17 +1,20 @@
-"""Edits that are too long for an address, stored among the uploads by a key."""
+"""Edits as text for an address; those that are too long are stored among the uploads by a key."""
+
+import base64
+import binascii
+import zlib
 
 from cutcell.editing import Edits
 from cutcell.errors import CutcellError
 
-from ..features.correct.choices import (
-    MAX_IN_ADDRESS,
-    MAX_VERTICES,
-    from_text,
-    to_text,
-    vertices_named,
-)
 from .upload_cache import Group, PageUploads
 
+MAX_IN_ADDRESS = 1500
+"""Letters: longer addresses are cut by some programs that pass them on."""
+MAX_VERTICES = 300
+"""Largest number of overruled vertices that are written into an address."""
+MAX_BYTES = 4 * 2**20
+"""Longest edits as JSON in an address: some characters are overruled vertex by vertex."""
 KEY = "~"
 """Prefix of keys; no text of edits begins with it."""
 
@@ -79,3 +82,29 @@ class EditsFile:
         group.paths = [path]
         self._group = group
         return KEY + group.key
+
+
+def vertices_named(edits: Edits) -> int:
+    """Return how many vertices layers name one by one."""
+    lists = [
+        one
+        for layer in edits.layers
+        for one in (layer.mask.vertices, getattr(layer.content, "vertices", None))
+    ]
+    return sum(len(one) for one in lists if one is not None)
+
+
+def to_text(edits: Edits) -> str:
+    """Return edits in letters that an address may hold."""
+    packed = zlib.compress(edits.to_json(indent=None).encode(), 9)
+    return base64.urlsafe_b64encode(packed).decode().rstrip("=")
+
+
+def from_text(text: str) -> Edits:
+    """Read what `to_text` returns; raise a `ValueError` for other texts."""
+    try:
+        packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
+        plain = zlib.decompressobj().decompress(packed, MAX_BYTES)
+        return Edits.from_json(plain.decode())
+    except (binascii.Error, zlib.error, UnicodeDecodeError, CutcellError) as error:
+        raise ValueError(str(error)) from None

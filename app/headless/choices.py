@@ -11,12 +11,13 @@ from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell_lab.baselines import METHODS
 
+from ..document.framing import first_joint
 from ..document.method import GRAPH, method_of
-from ..document.state import PANELS, State
-from ..features.character import first_joint
-from ..features.compare.choices import NOW, listed, standard
-from ..features.sweep import SWEEPS, has_cut
+from ..document.side_by_side import NOW, listed, standard
+from ..document.state import State
+from ..features.state import PANELS, PageState
 from ..features.weights.choices import SHOWN
+from ..shell.session.sweep import SWEEPS, has_cut
 from .names import bone_index, clip_index
 from .options import apply
 
@@ -95,7 +96,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
     bone, clip = choices.bone, choices.clip
     if clip is None and choices.time is not None:
         raise ParameterError("a time is one in a clip: name the clip, too")
-    state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
+    state = PageState(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
     state.joint = first_joint(rig) if bone is None else bone_index(rig, bone)
     state.param.update(
         **method_of(choices.method, GRAPH),

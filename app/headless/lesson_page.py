@@ -19,8 +19,8 @@ from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.palette import THEMES
 
-from ..features.character import theme_part
-from ..features.compare.scene import shown_title, weights_of
+from ..document.framing import theme_part
+from ..features.flat.flat_scene import flat_colors
 from ..features.learn.lesson import Lesson, Step, built_in
 from ..features.learn.plots import plot_of
 from ..features.learn.steps import (
@@ -33,7 +33,7 @@ from ..features.learn.steps import (
     offer,
     pressed_offers,
 )
-from ..widgets.flat_scene import flat_colors
+from ..looks.methods import shown_title, weights_of
 from .interactive import page_in_one_file
 from .packed import Packed
 from .recorder import Recorder
@@ -89,7 +89,7 @@ def lesson_page(lesson: Lesson | None = None, *, progress: Progress = silent) ->
         }
     )
     content = f'<p>Loading the lesson …</p>\n<ol class="handout">{"".join(rows)}</ol>'
-    return page_in_one_file("lesson_page", lesson[0].title, content, packed, scenes)
+    return page_in_one_file("one_file/lesson_page", lesson[0].title, content, packed, scenes)
 
 
 def _row(index: int, step: Step, picture: str) -> str:

@@ -11,7 +11,7 @@ from cutcell.io.interactive import Page
 from cutcell.rig import Rig
 from cutcell.runtime.notebook import is_attended
 
-from ..features.character import first_joint
+from ..document.framing import first_joint
 from ..widgets.modules import FOLDER
 
 
@@ -31,7 +31,7 @@ class PageWidget(anywidget.AnyWidget):
         A joint or a vertex that the rig does not have.
     """
 
-    _esm = FOLDER / "notebook.js"
+    _esm = FOLDER / "one_file/notebook.js"
     content = traitlets.Unicode().tag(sync=True)  # empty until it is shown to a person
     height = traitlets.Int().tag(sync=True)
     joint = traitlets.Any(None).tag(sync=True)

@@ -10,7 +10,7 @@ from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError
 
 from ..document.state import State
-from ..features.distance.choices import MAX_MEASURES, MEASURES
+from ..looks.measures import MAX_MEASURES, MEASURES
 
 LAYERS = {
     "body": "body",

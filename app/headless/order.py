@@ -11,7 +11,7 @@ from cutcell_viewers.film import Order, ground
 from cutcell_viewers.finding_scene import camera_on_marks
 from cutcell_viewers.pose_scene import clip_in_scene
 
-from ..features.character import camera_on_bone
+from ..document.framing import camera_on_bone
 from .address import read_camera
 from .choices import Choices, state_of
 from .names import clip_named

@@ -9,7 +9,7 @@ from typing import Any
 from cutcell.errors import CutcellError
 from cutcell_viewers.description import Description
 
-from ..shell.begin import begin
+from ..shell.session.begin import begin
 from ..widgets.changes import changes
 
 PARTS = ("animation", "bones", "brush", "camera", "clip", "front", "gizmo", "images", "playing")

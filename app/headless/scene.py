@@ -16,13 +16,13 @@ from cutcell_viewers.pose_scene import clip_in_scene
 
 from ..derive.derived import compute_wanted
 from ..document.state import State
+from ..editing.symmetry import results as symmetry
 from ..features.compare import results as compare
 from ..features.distance import results as distance
 from ..features.graph import results as graph
 from ..features.pose.errors import motion_error
 from ..features.scenes import following, resolve
-from ..features.sweep import sweep_scenes
-from ..features.symmetry import results as symmetry
+from ..shell.session.sweep import sweep_scenes
 from .choices import Choices, state_of
 from .names import clip_named
 

@@ -5,12 +5,12 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..document.session import Session
-from ..document.state import PANELS
+from ..editing.correct.template_controls import SKELETON
 from ..features.builders import BUILDERS
-from ..features.correct.template_controls import SKELETON
-from ..features.weights.bone import BONE
+from ..features.state import PANELS
 from ..widgets import controls as ui
 from ..widgets.tabs import Tabs
+from .bone import BONE
 from .character import CHARACTER
 from .export_controls import BASE, EXPORT
 

@@ -9,7 +9,6 @@ from cutcell.method import OPTIONS
 from cutcell.options import Flag, Whole
 
 from ..document.session import Session
-from ..document.state import State
 from .follow import Reader
 from .table import Control, draw
 from .text import as_text, joint_title, unique_names
@@ -58,17 +57,19 @@ def slider(name: str, kind: Any = pmui.FloatSlider, **options: Any) -> Control:
         return widget
 
     style = {**SMALL, **({"format": "0.00"} if kind is pmui.FloatSlider else {})}
-    if name:
-        parameter = State.param[name]
-        style["start"], style["end"] = parameter.get_soft_bounds()
-        style["step"] = parameter.step or 1
-    return Control(prompt, name, **{**style, **options})
+    return Control(prompt, name, declared=_range, **{**style, **options})
+
+
+def _range(parameter: Any) -> dict[str, Any]:
+    """Return the bounds of a number, and its steps."""
+    start, end = parameter.get_soft_bounds()
+    return {"start": start, "end": end, "step": parameter.step or 1}
 
 
 def choice(name: str, title: str = "", above: int = 2, **options: Any) -> Any:
     """Return a row of buttons, one of which is pressed, below a title if it has one."""
-    style = {**SMALL, "label": "", "sx": BUTTONS, "options": names_of(name)}
-    buttons = Control(pmui.RadioButtonGroup, name, **{**style, **options})
+    style = {**SMALL, "label": "", "sx": BUTTONS}
+    buttons = Control(pmui.RadioButtonGroup, name, declared=_choices, **{**style, **options})
     shared = {"visible": options["visible"]} if "visible" in options else {}
     return [caption(title, margin=(above, 0, 0, 0), **shared), buttons] if title else buttons
 
@@ -85,13 +86,13 @@ def option(name: str, **options: Any) -> Any:
 
 def select(name: str, label: Any, **options: Any) -> Control:
     """Return a menu."""
-    style = {**SMALL, "label": label, "options": names_of(name)}
-    return Control(pmui.Select, name, **{**style, **options})
+    style = {**SMALL, "label": label}
+    return Control(pmui.Select, name, declared=_choices, **{**style, **options})
 
 
-def names_of(name: str) -> dict[str, Any]:
+def _choices(parameter: Any) -> dict[str, Any]:
     """Return the values of a parameter by the labels that it was declared with."""
-    return dict(getattr(State.param[name], "names", ())) if name else {}
+    return {"options": dict(getattr(parameter, "names", ()))}
 
 
 def pick(

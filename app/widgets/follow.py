@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Set
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from inspect import getattr_static
 from typing import Any
 
@@ -13,7 +13,11 @@ from panel.io import hold
 from ..document.session import Session
 from ..document.state import State
 
-NAMES = frozenset(State.param)
+
+@cache
+def names_of(kind: type[State]) -> frozenset[str]:
+    """Return the names of all parameters of a class of states."""
+    return frozenset(kind.param)
 
 
 class Reader:
@@ -30,7 +34,7 @@ class Reader:
 
     def __getattr__(self, name: str) -> Any:
         state = self.session.state
-        if name in NAMES:
+        if name in names_of(type(state)):
             self.names.add(name)
             return getattr(state, name)
         attribute = getattr_static(type(state), name, None)
@@ -68,7 +72,8 @@ class Followers:
         self.session, self._panel = session, panel
         self._all: list[Follower] = []
         self._missed: Set[str] = frozenset()
-        session.state.param.watch(self._changed, list(NAMES))
+        self._names = names_of(type(session.state))
+        session.state.param.watch(self._changed, list(self._names))
 
     def add(self, one: Follower) -> Any:
         """Add a follower, and return its function's value; it has not acted yet."""
@@ -92,7 +97,7 @@ class Followers:
     def _changed(self, *events: Any) -> None:
         # A parameter is triggered where nothing came of a choice: every widget is reset.
         is_reset = any(event.type == "triggered" for event in events)
-        names = NAMES if is_reset else self._missed | {event.name for event in events}
+        names = self._names if is_reset else self._missed | {event.name for event in events}
         is_seen = self._panel in ("", self.session.state.panel)
         self._missed = frozenset() if is_seen else names
         with hold():

@@ -10,7 +10,6 @@ from typing import Any
 from panel.viewable import Viewable
 
 from ..document.session import Session
-from ..document.state import State
 from .follow import Follower, Followers, Reader
 
 
@@ -35,6 +34,8 @@ class Control:
         Parameter of the widget that changes when a person chooses.
     repeats : bool
         Whether Enter in a field chooses its text again.
+    declared : callable, optional
+        Function of the parameter that returns options of the widget besides its label.
     **options
         Options of the widget. A function is called with a `Reader`, again whenever what it reads
         changes, and returns the option's value.
@@ -50,16 +51,24 @@ class Control:
         late: Collection[str] = (),
         watched: str = "value",
         repeats: bool = False,
+        declared: Callable[[Any], dict[str, Any]] = lambda parameter: {},
         **options: Any,
     ) -> None:
         if name:
-            options = {"label": State.param[name].label, "value": attrgetter(name), **options}
+            options = {"value": attrgetter(name), **options}
             act = act or (lambda session, value: setattr(session.state, name, value))
         self.kind, self.act, self.content, self.watched = kind, act, content, watched
         self.late, self.repeats = frozenset(late), repeats
         self.fixed = {name: value for name, value in options.items() if not callable(value)}
         self._moving = {name: value for name, value in options.items() if callable(value)}
-        self._shows = shows
+        self._name, self._declared, self._shows = name, declared, shows
+
+    def declared(self, state: Any) -> dict[str, Any]:
+        """Return the options that the declaration of the parameter gives."""
+        if not self._name:
+            return {}
+        parameter = state.param[self._name]
+        return {"label": parameter.label, **self._declared(parameter)}
 
     def shown(self, state: Any) -> dict[str, Any]:
         """Return the options that follow the state."""
@@ -81,7 +90,8 @@ def _draw(followers: Followers, row: Any, owner: Follower | None) -> Any:
     if not isinstance(row, Control):
         return _draw(followers, row(followers.session), owner)
     follower = Follower(row.shown, lambda values: _update(widget, values), row.late, owner)
-    options = {**row.fixed, **followers.add(follower)}
+    declared = row.declared(followers.session.state)
+    options = {**declared, **row.fixed, **followers.add(follower)}
     rows = () if callable(row.content) else flat(row.content)
     widget = row.kind(*(_draw(followers, one, owner) for one in rows), **options)
     if callable(row.content):

@@ -13,7 +13,7 @@ from cutcell_app.document import loading
 from cutcell_app.document.session import Session
 from cutcell_app.files.storage import Storage
 from cutcell_app.files.upload_cache import UploadCache
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session.begin import begin
 from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served, visits
 from tests.app.loop import Loop

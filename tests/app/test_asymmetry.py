@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from cutcell import MeshError, SkeletonError
 from cutcell.editing.symmetry import find_mirror, partners_by_name
-from cutcell_app.features.symmetry.asymmetry import asymmetry, mirror_image
+from cutcell_app.editing.symmetry.asymmetry import asymmetry, mirror_image
 from cutcell_assets import demo_path
 from tests.bars import bar, grid_box
 

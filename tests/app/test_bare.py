@@ -6,12 +6,12 @@ import pytest
 from cutcell.errors import SkeletonError
 from cutcell_app.document import loading, look
 from cutcell_app.document.address import to_query
-from cutcell_app.document.state import PANELS
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.bone import BONE
+from cutcell_app.features.state import PANELS
 from cutcell_app.headless import Choices, describe
-from cutcell_app.shell import keys
+from cutcell_app.shell.bone import BONE
 from cutcell_app.shell.export_controls import EXPORT
+from cutcell_app.shell.session import keys
 from cutcell_app.shell.sidebar import NO_SKELETON, panels
 from cutcell_app.shell.status import messages, summary
 from cutcell_app.widgets.controls import draw

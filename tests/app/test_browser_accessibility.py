@@ -4,7 +4,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
-from cutcell_app.document.state import PANELS
+from cutcell_app.features.state import PANELS
 
 pytestmark = pytest.mark.slow
 

@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from cutcell_app.document.state import PANELS
+from cutcell_app.features.state import PANELS
 
 pytestmark = pytest.mark.slow
 

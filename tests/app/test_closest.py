@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cutcell_app.features.symmetry.closest import closest_on_triangle
+from cutcell_app.editing.symmetry.closest import closest_on_triangle
 
 
 def test_the_closest_point_of_a_triangle_is_that_of_a_dense_sample():

@@ -6,16 +6,17 @@ import pytest
 import cutcell
 from cutcell.errors import ParameterError
 from cutcell_app.document.address import from_query, to_query
-from cutcell_app.features.compare import results as compare
-from cutcell_app.features.compare.choices import NOW, listed
-from cutcell_app.features.compare.controls import rows_of
-from cutcell_app.features.compare.scene import round_top
-from cutcell_app.features.compare.settings import (
+from cutcell_app.document.side_by_side import (
+    NOW,
     is_settings,
+    listed,
     name_of,
     settings,
     title_of_settings,
 )
+from cutcell_app.features.compare import results as compare
+from cutcell_app.features.compare.controls import rows_of
+from cutcell_app.features.compare.scene import round_top
 from cutcell_app.features.scenes import resolve
 from cutcell_app.headless.choices import Choices
 from cutcell_app.headless.scene import describe

@@ -10,7 +10,7 @@ from cutcell_app.derive.jobs import COMPARING, Job
 from cutcell_app.document import loading
 from cutcell_app.features.compare import results as compare
 from cutcell_app.features.compare.controls import rows_of
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session.begin import begin
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from tests.viewers.arm import arm_rig
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from cutcell_app.features.character import bounds_of, cut_of
-from cutcell_app.features.cut import commands as cutting
+from cutcell_app.document.framing import bounds_of
+from cutcell_app.looks import cut as cutting
+from cutcell_app.looks.character import cut_of
 from cutcell_viewers.camera import Camera
 
 

@@ -15,17 +15,17 @@ from cutcell.diagnosis.repair import WEIGHT_REPAIRS
 from cutcell.errors import LocatedWarning
 from cutcell.rig import TriangleMesh
 from cutcell_app.document import loading
-from cutcell_app.document.state import State
-from cutcell_app.features.character import bounds_of
+from cutcell_app.document.framing import bounds_of
+from cutcell_app.editing.binding.recovery import is_current
+from cutcell_app.editing.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.check.choices import EXPORT
 from cutcell_app.features.check.controls import CONTROLS, summary
 from cutcell_app.features.check.results import go_to, look_at, repair, take_back
-from cutcell_app.features.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.recovery import is_current
+from cutcell_app.features.state import PageState
 from cutcell_app.shell.character import faults
-from cutcell_app.shell.export import export_bound
 from cutcell_app.shell.export_controls import changes_of
+from cutcell_app.shell.session.export import export_bound
 from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
@@ -162,7 +162,7 @@ def test_what_was_repaired_is_exported(spoiled, loop, tmp_path):
     (tmp_path / name).write_bytes(content)
     again = cutcell.load(tmp_path / name)
     assert cutcell.diagnose(again, 16).findings == ()
-    changed = np.abs(again.weights - state.repair.before.weights).max(axis=1) > 1e-6
+    changed = np.abs(again.weights - spoiled_arm().weights).max(axis=1) > 1e-6
     assert np.flatnonzero(changed).tolist() == [0, 1, 2]
     assert uses_file(spoiled)
     assert changes_of(state) == "3 vertices differ from the file: Repaired 3."
@@ -188,7 +188,7 @@ def test_joints_and_vertices_get_beads():
     assert set(marks) == {"finding vertices", "finding joints"}
     for mark in marks.values():
         middle = mark.points.mean(axis=0)
-        low, high = bounds_of(State(rig=rig))
+        low, high = bounds_of(PageState(rig=rig))
         assert (middle >= low - 0.1).all()
         assert (middle <= high + 0.1).all()
 
@@ -295,14 +295,14 @@ def test_a_part_may_follow_what_it_touches_or_an_empty_or_the_nearest_joint(boun
 def test_what_a_part_would_follow_is_seen_under_the_pointer(bound, loop):
     rows, state = far_part(bound, loop), bound.state
     before = resolve(state)
-    rows._handle_msg({"type": "row-point", "row": 2})
+    rows._handle_msg({"type": "point-at-row", "row": 2})
     assert not state.edits.layers
     colors = resolve(state).actors["body"].colors
     wrist = weight_colors(state.rig, np.tile([0.0, 0.0, 1.0], (len(colors), 1)))[0]["colors"]
     np.testing.assert_array_equal(colors, wrist)
-    rows._handle_msg({"type": "row-point", "row": -1})
+    rows._handle_msg({"type": "point-at-row", "row": -1})
     assert resolve(state).actors.keys() == before.actors.keys()
-    rows._handle_msg({"type": "row-point", "row": 0})
+    rows._handle_msg({"type": "point-at-row", "row": 0})
     rows.click(2)
     assert state.tried is None
 

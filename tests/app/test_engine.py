@@ -11,7 +11,7 @@ from cutcell_app.derive.engine import Engine
 from cutcell_app.derive.work import Work
 
 
-class State(param.Parameterized):
+class PageState(param.Parameterized):
     """Two choices, and results that follow from them."""
 
     a = param.Integer(1)
@@ -65,7 +65,7 @@ class Page:
     """An engine with all that surrounds it."""
 
     def __init__(self, *results):
-        self.state, self.pool, self.clock = State(), Pool(), Clock()
+        self.state, self.pool, self.clock = PageState(), Pool(), Clock()
         self.errors, self.hooks = [], []
         self.work = Work(
             lambda action: action(), self.errors.append, pool=self.pool, clock=self.clock
@@ -334,7 +334,7 @@ def test_a_closed_page_computes_nothing_any_more():
 
 
 def test_without_an_engine_all_that_is_wanted_is_computed_in_order():
-    state = State(a=2)
+    state = PageState(a=2)
     compute_wanted(state, (doubled(), total(), powers(wanted=lambda state, part: part == 3)))
     assert (state.doubled, state.total, state.powers) == (4, 5, {3: 8})
 

@@ -3,8 +3,8 @@
 import pytest
 
 from cutcell_app.document.look import pick_vertex
+from cutcell_app.features.inspector.facts import vertex_facts
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.facts import vertex_facts
 
 
 @pytest.fixture

@@ -18,9 +18,10 @@ import cutcell
 from cutcell_app.derive import jobs
 from cutcell_app.derive.work import Work
 from cutcell_app.document import loading
-from cutcell_app.document.state import PANELS, State
-from cutcell_app.features.weights import recovery as binding
-from cutcell_app.shell.export import (
+from cutcell_app.editing.binding import recovery as binding
+from cutcell_app.features.state import PANELS, PageState
+from cutcell_app.shell.export_controls import _described, page
+from cutcell_app.shell.session.export import (
     export_bound,
     export_interactive,
     export_motion,
@@ -29,7 +30,6 @@ from cutcell_app.shell.export import (
     export_sweep,
     export_turntable,
 )
-from cutcell_app.shell.export_controls import _described, page
 from tests.cutcell.io.gltf.gltf_builder import COLUMN
 from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
 
@@ -104,8 +104,8 @@ def taken(loop, act, *arguments):
 
 @pytest.fixture
 def small(monkeypatch):
-    monkeypatch.setattr("cutcell_app.shell.export.PICTURE_PIXELS", 160 * 120)
-    monkeypatch.setattr("cutcell_app.shell.export.FILM_PIXELS", 64 * 48)
+    monkeypatch.setattr("cutcell_app.shell.session.export.PICTURE_PIXELS", 160 * 120)
+    monkeypatch.setattr("cutcell_app.shell.session.export.FILM_PIXELS", 64 * 48)
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def orders(monkeypatch):
         orders.append(order)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr("cutcell_app.shell.export.draw_isolated", remember)
+    monkeypatch.setattr("cutcell_app.shell.session.export.draw_isolated", remember)
     return orders
 
 
@@ -199,8 +199,11 @@ def killed(*given):
 
 
 WRITERS = {
-    "file": ("cutcell_app.shell.export.save_bound", export_bound),
-    "numbers": ("cutcell_app.shell.export.save_numbers", partial(export_numbers, what="all")),
+    "file": ("cutcell_app.shell.session.export.save_bound", export_bound),
+    "numbers": (
+        "cutcell_app.shell.session.export.save_numbers",
+        partial(export_numbers, what="all"),
+    ),
 }
 
 
@@ -222,7 +225,7 @@ def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypat
 
 
 def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
-    monkeypatch.setattr("cutcell_app.shell.export.save_bound", killed)
+    monkeypatch.setattr("cutcell_app.shell.session.export.save_bound", killed)
     export_bound(bound, lambda name, content: pytest.fail("it crashed"))
     loop.run_until(lambda: not bound.state.busy)
     assert "Writing it came to a sudden end" in bound.state.message[1]
@@ -295,7 +298,7 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
 
 def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
     def said(path):
-        return _described(State(rig=cutcell.load(path)))
+        return _described(PageState(rig=cutcell.load(path)))
 
     assert "Only weights" in said(demo_paths[0])
     path = tmp_path / "column.obj"

@@ -15,12 +15,12 @@ import cutcell
 from cutcell.binding import bind
 from cutcell.errors import MeshError
 from cutcell_app.document import loading
+from cutcell_app.editing.binding import recovery as binding
+from cutcell_app.editing.binding import results
+from cutcell_app.editing.correct import commands as correct
 from cutcell_app.features.check import results as check
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.weights import recovery as binding
-from cutcell_app.features.weights import results
-from cutcell_app.shell import export
 from cutcell_app.shell.export_controls import page
+from cutcell_app.shell.session import export
 from tests.viewers.arm import arm_rig
 
 

@@ -10,16 +10,16 @@ import pytest
 import cutcell
 from cutcell.graph.winding import winding_number as cutcell_winding
 from cutcell.rig import TriangleMesh
-from cutcell_app.document.state import State
+from cutcell_app.derive.memo import Memo
 from cutcell_app.features.compare.results import Compared
-from cutcell_app.features.compare.scene import title_of
-from cutcell_app.features.scenes import Memo
-from cutcell_app.features.weights.facts import NO_WEIGHT, components, node_facts, vertex_facts
+from cutcell_app.features.inspector.facts import NO_WEIGHT, components, node_facts, vertex_facts
+from cutcell_app.features.state import PageState
 from cutcell_app.files.graph_numbers import save_graph
+from cutcell_app.looks.methods import title_of
 
 
 def facts(rig, binding, vertex):
-    return vertex_facts(State(rig=rig, binding=binding, vertex=vertex), Memo())
+    return vertex_facts(PageState(rig=rig, binding=binding, vertex=vertex), Memo())
 
 
 def test_without_a_vertex_there_is_nothing_to_tell(rig, binding):
@@ -50,9 +50,9 @@ def test_weights_and_distances_are_those_of_the_vertex(rig, binding):
 
 
 def test_the_card_lists_the_distance_of_the_chosen_bone(monkeypatch, rig, binding):
-    monkeypatch.setattr("cutcell_app.features.weights.facts.MAX_DISTANCES", 1)
+    monkeypatch.setattr("cutcell_app.features.inspector.facts.MAX_DISTANCES", 1)
     for joint in range(3):
-        state = State(rig=rig, binding=binding, vertex=7, joint=joint)
+        state = PageState(rig=rig, binding=binding, vertex=7, joint=joint)
         listed = [one["joint"] for one in vertex_facts(state, Memo())["distances"]]
         assert joint in listed
         assert len(listed) <= 2
@@ -84,7 +84,7 @@ def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
 
 def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
     graph = binding.graph
-    state = State(rig=rig, binding=binding, panel="graph", graph_resolution=0)
+    state = PageState(rig=rig, binding=binding, panel="graph", graph_resolution=0)
     assert node_facts(state, Memo()) is None
     for kind, name in enumerate(("mesh", "interior", "surface")):
         state.node = node = int(np.flatnonzero((graph.node_kind == kind) & graph.connected)[0])
@@ -131,7 +131,7 @@ def test_a_graph_leaves_as_numbers(binding, tmp_path):
 def test_beside_other_methods_the_card_shows_the_clicked_ones_weights(rig, binding):
     other = np.zeros_like(binding.weights)
     other[:, 2] = 1
-    state = State(
+    state = PageState(
         rig=rig, binding=binding, vertex=7, panel="compare", methods=["now", "artist", "euclidean"]
     )
     state.compared = {"euclidean": Compared(other)}

@@ -9,10 +9,10 @@ from scipy.sparse import csr_array
 
 from cutcell_app.document.address import from_query, to_query
 from cutcell_app.document.look import pick_vertex
-from cutcell_app.document.state import State
 from cutcell_app.features.flat.choices import MODES
 from cutcell_app.features.learn.plots import plot_of
 from cutcell_app.features.learn.sliders import SLIDERS, slide, sliders_of
+from cutcell_app.features.state import PageState
 from cutcell_lab.baselines.measured_distance import ErrorPoint
 from cutcell_viewers.distance_scene import longest_side
 
@@ -51,18 +51,18 @@ def test_a_mesh_without_a_skeleton_has_no_sources(bare, loop):
 
 @pytest.mark.parametrize("mode", MODES.values())
 def test_the_address_names_the_mode(mode):
-    state = State(flat=mode)
+    state = PageState(flat=mode)
     query = to_query(state)
     assert ("flat=" in query) == bool(mode)
     assert from_query(query, state)[0].get("flat", "") == mode
 
 
 def test_an_address_with_an_unknown_mode_is_reported():
-    assert from_query("?flat=tree", State())[2] == ["flat=tree"]
+    assert from_query("?flat=tree", PageState())[2] == ["flat=tree"]
 
 
 def test_a_text_names_its_sliders():
-    state = State(alpha=0.25)
+    state = PageState(alpha=0.25)
     sliders = sliders_of(state, "Drag α to {alpha} at {graph_resolution}, not {panel}.")
     assert list(sliders) == ["alpha", "graph_resolution"]
     assert sliders["alpha"]["value"] == 0.25

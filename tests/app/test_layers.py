@@ -12,13 +12,13 @@ from cutcell import Computed, Edits, Filled, FromFile, Layer, Locked, Mask, Pain
 from cutcell.cli.app import app
 from cutcell.editing.stored import load_edits
 from cutcell_app.document import loading
-from cutcell_app.features.brush import strokes
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.layers import commands as layers
-from cutcell_app.features.layers.controls import LAYERS, NEW_LAYERS
-from cutcell_app.features.weights import recovery
+from cutcell_app.editing.binding import recovery
+from cutcell_app.editing.brush import strokes
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.layers import commands as layers
+from cutcell_app.editing.layers.controls import LAYERS, NEW_LAYERS
 from cutcell_app.files.reading import load_with_materials
-from cutcell_app.shell import export, keys
+from cutcell_app.shell.session import export, keys
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
 from tests.app.loop import check_bound_as_by_core, settled
@@ -275,9 +275,9 @@ def test_the_panel_shows_the_stack_and_changes_the_chosen_layer(bound, loop):
     settled(bound, loop)
     assert state.edits.layers[0].opacity == 0.25
     check_bound_as_by_core(bound, arm_rig())
-    rows._handle_msg({"row": 0})
+    rows._handle_msg({"type": "pick-row", "row": 0})
     assert state.layer is None
-    rows._handle_msg({"row": 0})
+    rows._handle_msg({"type": "pick-row", "row": 0})
     buttons(section)["Delete"].clicks += 1
     assert not state.edits
 

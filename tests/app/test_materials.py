@@ -12,7 +12,7 @@ from cutcell_app.document.address import from_query, to_query
 from cutcell_app.features.pose import materials
 from cutcell_app.features.pose.controls import CONTROLS
 from cutcell_app.features.scenes import following, resolve
-from cutcell_app.shell import keys
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.changes import changes
 from cutcell_app.widgets.controls import draw
 from cutcell_viewers.description import Description

@@ -6,11 +6,11 @@ import panel_material_ui as pmui
 
 import cutcell
 from cutcell_app.document import loading
-from cutcell_app.document.state import State
 from cutcell_app.features.graph.controls import CONTROLS
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.weights.bone import BONE
+from cutcell_app.features.state import PageState
 from cutcell_app.shell import character
+from cutcell_app.shell.bone import BONE
 from cutcell_app.widgets.controls import draw, pick
 from cutcell_app.widgets.text import unique_names
 from cutcell_viewers.graph_scene import LAYERS
@@ -19,7 +19,7 @@ from tests.viewers.arm import arm_rig
 
 
 def test_an_index_that_stays_is_shown_by_its_new_name_at_once():
-    state = State(actors={"hand": 0, "foot": 0}, joint=1)
+    state = PageState(actors={"hand": 0, "foot": 0}, joint=1)
     chosen = []
     row = pick(
         "Mesh",

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from cutcell_app.document import loading
-from cutcell_app.features.character import bounds_of
+from cutcell_app.document.framing import bounds_of
 from cutcell_app.features.pairs import results as pairs
 from cutcell_app.features.pairs.choices import OpenedAudit
 from cutcell_app.features.pairs.controls import CONTROLS, facts, summary, threshold_text
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import keys, status
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell import status
+from cutcell_app.shell.session import keys
+from cutcell_app.shell.session.begin import begin
 from cutcell_app.widgets.controls import draw
 from cutcell_lab.dataset import load_audit
 from tests.app.audits import saved_audit

@@ -6,8 +6,8 @@ import trimesh
 
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
-from cutcell_app.editing.moved_distances import MovedDistances
-from cutcell_app.editing.preview import Preview
+from cutcell_app.editing.compute.moved_distances import MovedDistances
+from cutcell_app.editing.compute.preview import Preview
 
 
 @pytest.fixture(scope="module")

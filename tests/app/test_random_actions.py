@@ -11,11 +11,11 @@ import pytest
 from cutcell.editing import Computed, FromFile, Layer, Locked, Mask
 from cutcell_app.document import loading, recording
 from cutcell_app.document.address import snapshot
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import moving
-from cutcell_app.features.weights.recovery import is_current
-from cutcell_app.shell import export, keys
-from cutcell_app.shell.begin import begin
+from cutcell_app.editing.binding.recovery import is_current
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import moving
+from cutcell_app.shell.session import export, keys
+from cutcell_app.shell.session.begin import begin
 from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
 

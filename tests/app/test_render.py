@@ -20,7 +20,6 @@ import cutcell_viewers
 from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell.runtime.progress import silent
-from cutcell_app.features import sweep
 from cutcell_app.features.learn.lesson import built_in
 from cutcell_app.files.table_export import save_numbers
 from cutcell_app.headless import (
@@ -37,6 +36,7 @@ from cutcell_app.headless import scene as describing
 from cutcell_app.headless.flags import CHOICES, PICTURE, SETTINGS
 from cutcell_app.headless.lesson_page import STOPS
 from cutcell_app.headless.options import READERS
+from cutcell_app.shell.session import sweep
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig

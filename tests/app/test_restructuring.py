@@ -8,10 +8,10 @@ import cutcell
 from cutcell.editing import Computed, Filled, JointEdit, Layer, Mask, Painted
 from cutcell.rig import Rig, Skeleton
 from cutcell_app.document import loading
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import structure
-from cutcell_app.features.correct.structure_controls import NOTHING, STRUCTURE
-from cutcell_app.shell import export, keys
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import structure
+from cutcell_app.editing.correct.structure_controls import NOTHING, STRUCTURE
+from cutcell_app.shell.session import export, keys
 from cutcell_app.widgets.controls import draw
 from tests.viewers.arm import arm_rig
 

@@ -13,11 +13,11 @@ import pytest
 import cutcell
 from cutcell.errors import MeshError
 from cutcell_app.document import loading, look
+from cutcell_app.editing.binding import recovery as binding
+from cutcell_app.editing.binding import results
 from cutcell_app.features import scenes
-from cutcell_app.features.weights import recovery as binding
-from cutcell_app.features.weights import results
-from cutcell_app.shell import keys
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session import keys
+from cutcell_app.shell.session.begin import begin
 from cutcell_app.shell.status import stage_text, summary, warning
 from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.description import Actor

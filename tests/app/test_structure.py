@@ -1,29 +1,35 @@
-"""The page's rooms: arrows run one way, and nothing imports in a circle, not even for types."""
+"""Layers of the page: imports run one way and in no cycle, not even for types."""
 
 import ast
 import subprocess
 import sys
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import param
 import pytest
 
-from cutcell_app.document.state import State
+from cutcell_app.features.state import PageState
 from tests.test_layers import ROOT, imports_of, modules_of, package_of
 
 APP = ROOT / "app"
 
-ROOMS = (
+LAYERS = (
+    {"derive", "messages", "server"},
+    {"files"},
+    {"document"},
+    {"widgets"},
+    {"looks"},
     {"editing"},
-    {"derive", "server"},
-    {"document", "features", "files", "widgets"},
+    {"features"},
     {"headless", "shell"},
     {"serve"},
     {"command_line"},
 )
 """Each may use itself, those beside it and those before it; the last are the commands."""
-RANK = {room: rank for rank, rooms in enumerate(ROOMS) for room in rooms}
+RANK = {name: rank for rank, names in enumerate(LAYERS) for name in names}
+MAX_ENTRIES = 15
 
 
 def graph_of(names: list[str]) -> dict[str, set[str]]:
@@ -35,6 +41,12 @@ def graph_of(names: list[str]) -> dict[str, set[str]]:
         path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
         graph[name] = {result for result in used_by(path) if result in known}
     return graph
+
+
+@cache
+def page_graph() -> dict[str, set[str]]:
+    """Return the imports between all modules of the page."""
+    return graph_of(modules_of("cutcell_app"))
 
 
 def used_by(path: Path) -> set[str]:
@@ -49,7 +61,7 @@ def used_by(path: Path) -> set[str]:
 
 
 def test_nothing_imports_in_a_circle():
-    graph = graph_of(modules_of("cutcell_app"))
+    graph = page_graph()
     assert sum(map(len, graph.values())) > 100, "the imports were not found"
     try:
         TopologicalSorter(graph).prepare()
@@ -57,13 +69,13 @@ def test_nothing_imports_in_a_circle():
         pytest.fail(" -> ".join(error.args[1]))
 
 
-def test_rooms_use_only_those_before_them():
-    rooms = {path.stem for path in APP.glob("*.py")} - {"__init__"}
-    rooms |= {path.parent.name for path in APP.glob("*/__init__.py")}
-    assert rooms == set(RANK)
+def test_layers_use_only_those_before_them():
+    names = {path.stem for path in APP.glob("*.py")} - {"__init__"}
+    names |= {path.parent.name for path in APP.glob("*/__init__.py")}
+    assert names == set(RANK)
     wrong = [
         f"{name} imports {used}"
-        for name, all_used in graph_of(modules_of("cutcell_app")).items()
+        for name, all_used in page_graph().items()
         for used in all_used
         if name.count(".") and used.count(".")
         if (a := name.split(".")[1]) != (b := used.split(".")[1]) and RANK[b] > RANK[a]
@@ -71,11 +83,53 @@ def test_rooms_use_only_those_before_them():
     assert wrong == []
 
 
+def test_folders_import_each_other_in_no_cycle():
+    folders: dict[str, set[str]] = {}
+    for name, used in page_graph().items():
+        folders.setdefault(folder_of(name), set()).update(map(folder_of, used))
+    graph = {name: used - {name} for name, used in folders.items()}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def folder_of(module: str) -> str:
+    """Return the folder of a module, which a package is itself."""
+    path = APP / Path(*module.split(".")[1:])
+    return module if path.is_dir() else module.rpartition(".")[0]
+
+
+def features() -> list[str]:
+    return sorted(path.parent.name for path in (APP / "features").glob("*/__init__.py"))
+
+
+@pytest.mark.parametrize("feature", features())
+def test_features_import_no_other_feature(feature):
+    package = f"cutcell_app.features.{feature}."
+    others = {
+        f"{name} imports {used}"
+        for name, all_used in page_graph().items()
+        for used in all_used
+        if f"{name}.".startswith(package)
+        if used.startswith("cutcell_app.features") and not f"{used}.".startswith(package)
+    }
+    assert others == set()
+
+
+def test_folders_can_be_taken_in_at_a_glance():
+    folders = [path for path in APP.rglob("*") if path.is_dir()]
+    folders = [path for path in (APP, *folders) if path.name not in ("__pycache__", "frontend")]
+    count = {path: len({*path.iterdir()} - {path / "__pycache__"}) for path in folders}
+    large = {str(path): n for path, n in count.items() if n > MAX_ENTRIES}
+    assert large == {}
+
+
 def test_commands_know_no_widget_and_no_server_and_these_no_plotting_library():
     # matplotlib takes 60 MB of memory, VTK 75, and both time until the page is there.
     code = (
-        "import sys, cutcell_app.headless, cutcell_app.shell.watchers\n"
-        "import cutcell_app.document.arrival\n"
+        "import sys, cutcell_app.headless, cutcell_app.shell.session.watchers\n"
+        "import cutcell_app.document.loading\n"
         "print({'panel', 'bokeh', 'tornado'} & set(sys.modules))\n"
         "import cutcell_app.serve\n"
         "print({'matplotlib', 'pyvista', 'vtk', 'vtkmodules'} & set(sys.modules))"
@@ -86,7 +140,7 @@ def test_commands_know_no_widget_and_no_server_and_these_no_plotting_library():
 
 def test_each_choice_of_the_state_is_declared_once():
     # One of two with the same name would silently stand for both.
-    classes = [one for one in State.__mro__ if one.__module__.startswith("cutcell_app.")]
+    classes = [one for one in PageState.__mro__ if one.__module__.startswith("cutcell_app.")]
     names = [
         name for one in classes for name, value in vars(one).items()
         if isinstance(value, param.Parameter) and name != "name"

@@ -7,12 +7,12 @@ import pytest
 
 from cutcell import Skeleton
 from cutcell_app.document import loading
-from cutcell_app.features.correct.commands import rename
-from cutcell_app.features.correct.moving import mirror_of
+from cutcell_app.editing.correct.commands import rename
+from cutcell_app.editing.correct.moving import mirror_of
+from cutcell_app.editing.symmetry.asymmetry import asymmetry, mirror_image
+from cutcell_app.editing.symmetry.controls import PAIRS, about, set_partner
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.symmetry.asymmetry import asymmetry, mirror_image
-from cutcell_app.features.symmetry.controls import PAIRS, about, set_partner
-from cutcell_app.features.weights.scene import painted_colors
+from cutcell_app.looks.weights import painted_colors
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
 from tests.app.loop import settled

@@ -6,18 +6,13 @@ import pytest
 
 import cutcell
 from cutcell_app.document import loading
-from cutcell_app.features.correct import commands as correct
-from cutcell_app.features.correct import moving, templates
-from cutcell_app.features.correct.choices import to_text
-from cutcell_app.features.correct.joint_controls import JOINTS
-from cutcell_app.features.correct.template_controls import (
-    CHANGED,
-    NONE,
-    SKELETON,
-    chosen_template,
-)
+from cutcell_app.editing.correct import commands as correct
+from cutcell_app.editing.correct import moving, templates
+from cutcell_app.editing.correct.joint_controls import JOINTS
+from cutcell_app.editing.correct.template_controls import CHANGED, NONE, SKELETON, chosen_template
 from cutcell_app.features.scenes import resolve
-from cutcell_app.shell import export, keys
+from cutcell_app.files.edits_file import to_text
+from cutcell_app.shell.session import export, keys
 from cutcell_app.widgets.controls import draw
 from tests.app.loop import settled
 from tests.viewers.arm import arm_rig, bare_arm
@@ -97,8 +92,7 @@ def test_what_cannot_be_fitted_is_told(fitted, loop):
 def test_an_address_brings_it_back(fitted, session, loop):
     state, joints = fitted.state, fitted.state.rig.skeleton.joints
     said = to_text(state.edits)
-    fitted.arrival = {"edits": said, "bone": "bone.4"}
-    loading.show_rig(fitted, bare_arm())
+    loading.show_rig(fitted, bare_arm(), edits=said, bone="bone.4")
     loop.run_until(lambda: state.binding is not None)
     settled(fitted, loop)
     np.testing.assert_array_equal(state.rig.skeleton.joints, joints)

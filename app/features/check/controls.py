@@ -19,14 +19,14 @@ from cutcell.rig import Rig
 
 from ...document.session import Session
 from ...document.state import State
+from ...editing.binding.results import weights_with
+from ...editing.compute import stack
+from ...editing.compute.stack import components_of, part_layers
+from ...editing.correct.commands import correct, leave_out, lock
+from ...editing.layers.buttons import blend_button, file_button, recompute_button
+from ...editing.select.selections import finding_vertices, select_finding
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
-from ..correct.commands import correct, leave_out, lock
-from ..layers import stack
-from ..layers.buttons import blend_button, file_button, recompute_button
-from ..layers.stack import components_of, part_layers
-from ..select.selections import finding_vertices, select_finding
-from ..weights.results import weights_with
 from .choices import EXPORT, is_done
 from .results import look_at, repair, take_back
 
@@ -260,7 +260,7 @@ def _repairs(state: Any) -> list[Any]:
     if state.repair is None:
         return rows
     done = [_line(text) for text in state.repair.done]
-    if state.repair.before is state.rig:
+    if not state.repair.codes:
         return rows + done
     now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [

@@ -12,7 +12,7 @@ from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo
 from ...document.state import State
-from ..character import character, plain
+from ...looks.character import character, plain
 from .choices import EXPORT
 
 BODY_OPACITY_OF_FINDINGS = 0.5

@@ -2,17 +2,17 @@
 
 from typing import Any
 
+from ...document.side_by_side import FEWEST_VIEWS, MAX_VIEWS, listed
 from ...document.state import State
+from ...looks.methods import title_of
+from ...looks.pose_controls import REST, play
 from ...widgets import controls as ui
-from ...widgets.methods import Methods
-from ..disagreement.controls import DISAGREEMENT
-from ..lab.choices import VALUES
-from ..lab.controls import SWEEP
-from ..pose.controls import REST
-from ..pose.results import play
 from . import results as actions
-from .choices import FEWEST_VIEWS, MAX_VIEWS, listed
-from .scene import field_shown, title_of
+from .disagreement.controls import DISAGREEMENT
+from .lab.choices import VALUES
+from .lab.controls import SWEEP
+from .lab.methods import Methods
+from .scene import field_shown
 
 FIELDS = {"Bone": "bone", "Branch": "branch", "All bones": "all"}
 ERROR = {"Error": "error"}

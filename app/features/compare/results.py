@@ -1,7 +1,6 @@
 """Computes what is compared: one method after the other, none stopped by another's failure."""
 
 import logging
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,11 +26,21 @@ from ...derive.derived import Derived
 from ...derive.jobs import COMPARING
 from ...document.method import effective, method_of
 from ...document.session import Session
+from ...document.side_by_side import (
+    FEWEST_VIEWS,
+    MAX_VIEWS,
+    NOW,
+    SINGLE,
+    is_settings,
+    listed,
+    name_of,
+    offered,
+    settings,
+    single_choices,
+)
 from ...document.state import State
 from ...server.messages import error_text, visible_text
-from ..lab.results import choices_of
-from .choices import FEWEST_VIEWS, MAX_VIEWS, NOW, SINGLE, listed, offered, standard
-from .settings import is_settings, name_of, settings
+from .lab.results import choices_of
 
 logger = logging.getLogger("cutcell.app")
 
@@ -71,13 +80,8 @@ def choose(session: Session, name: str, chosen: bool) -> None:
     if chosen:
         names = [one for one in listed(state.rig, [*names, name]) if one in {*names, name}]
     if FEWEST_VIEWS <= len(names) <= MAX_VIEWS:
-        state.param.update(methods=names, **_single(state, {}, names))
-
-
-def _single(state: State, arrival: Mapping[str, Any], names: list[str]) -> dict[str, str]:
-    """Return the choices of one method each, empty where it is not among the names."""
-    chosen = {one: arrival.get(one, getattr(state, one)) for one in SINGLE}
-    return {one: name if name in names else "" for one, name in chosen.items()}
+        single = single_choices({one: getattr(state, one) for one in SINGLE}, names)
+        state.param.update(methods=names, **single)
 
 
 def add(session: Session) -> None:
@@ -132,21 +136,6 @@ def _result(rig: Rig, name: str, binding: Any, resolution: int, progress: Progre
     method = METHODS[name]
     with stoppable(lambda: progress(name, 0.0)):
         return method(rig, **known_options(method, resolution=resolution, progress=progress))
-
-
-def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
-    """Set the methods for a new character: those of an address, else those chosen before.
-
-    `arrival` may have "methods", those of `SINGLE`, and "settled".
-    """
-    standards = [standard(before, base) for base in ("computed", "file")]
-    chosen = [] if state.methods in standards else state.methods
-    wanted = arrival.get("methods", chosen)
-    names = [name for name in wanted if name in listed(state.rig, wanted)]
-    if len(names) < FEWEST_VIEWS:
-        names = standard(state.rig, state.opening.base)
-    single = _single(state, arrival, names)
-    state.param.update(methods=names, **single, settled=arrival.get("settled", ()))
 
 
 def _inputs(state: State, name: str) -> tuple[Any, ...] | None:

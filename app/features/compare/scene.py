@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell_lab.baselines import METHODS
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
 from cutcell_viewers.marks import vertex_dots
@@ -17,23 +16,9 @@ from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo
 from ...document.state import State
-from ..character import character
-from ..pose.scene import pose_of
-from .choices import NOW
-from .settings import is_settings, title_of_settings
-
-TITLES = {
-    NOW: "Current weights",
-    "artist": "From file",
-    "bbw": "Bounded biharmonic",
-    "cutcell": "cutcell (paper)",
-    "cutcell_any": "Cut-cell, any angle",
-    "cutcell_rig": "cutcell (animation)",
-    "visibility": "RigNet's distance",
-    "voxel": "Voxel binding",
-    "voxel_unirig": "Voxel binding, UniRig's",
-}
-"""Titles of methods; trained networks have their own, and others use their names."""
+from ...looks.character import character
+from ...looks.methods import shown_title, weights_of
+from ...looks.pose import pose_of
 
 TOPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 """Ends of scales of differences below 1."""
@@ -75,20 +60,6 @@ def region_dots(state: State, memo: Memo, body: Actor) -> dict[str, Actor]:
     return {f"region {body.view}": replace(dots, view=body.view)}
 
 
-def title_of(name: str) -> str:
-    """Return the title of a method."""
-    if is_settings(name):
-        return title_of_settings(name)
-    title = getattr(METHODS.get(name), "title", None)
-    return TITLES.get(name) or title or name.replace("_", " ").capitalize()
-
-
-def shown_title(state: State, name: str) -> str:
-    """Return the title of a method, or the caption that the step of a lesson gives it."""
-    step = state.lesson_step
-    return (step and step.captions.get(name)) or title_of(name)
-
-
 def caption_of(state: State, name: str) -> str:
     """Return the title of a method's view, with its progress, its error or what is subtracted."""
     title = shown_title(state, name)
@@ -102,16 +73,6 @@ def caption_of(state: State, name: str) -> str:
     if state.minus and subtracted(state) is not None:
         return f"{title} − {'itself' if name == state.minus else shown_title(state, state.minus)}"
     return title
-
-
-def weights_of(state: State, name: str) -> Any:
-    """Return the weights of a method, shape (n, j); None if they are not computed."""
-    if name == NOW:
-        return None if state.binding is None else state.binding.weights
-    if name == "artist":
-        return state.rig.weights
-    result = state.compared.get(name)
-    return None if result is None else result.weights
 
 
 def subtracted(state: State) -> Any:

@@ -6,30 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
-from ..panel import Panel
+from ...document.state import Panel
+from ...looks.measures import CONVERGED, MAX_MEASURES, MEASURES, RESOLUTIONS
 
 if TYPE_CHECKING:
     from cutcell_lab.baselines.measured_distance import Measure
-
-RESOLUTIONS = (16, 32, 64, 128)
-"""R that can be compared."""
-
-CONVERGED = 192
-"""R of the distances, along paths of any angle, that others are compared with."""
-
-MAX_MEASURES = 4
-"""That stand side by side."""
-
-MEASURES: dict[Measure, str] = {
-    "straight": "Straight line",
-    "surface": "Over the surface",
-    "voxel": "Along voxels",
-    "6": "6 neighbours",
-    "26": "26 neighbours",
-    "any": "Any angle",
-    "converged": "Converged",
-}
-"""Names of the measures of distance."""
 
 PANEL = Panel(
     "Distance",

@@ -3,9 +3,9 @@
 from typing import Any
 
 from ...document.session import Session
+from ...looks.cut_controls import CUTTING
+from ...looks.measures import MAX_MEASURES, MEASURES
 from ...widgets import controls as ui
-from ..cut.controls import CUTTING
-from .choices import MAX_MEASURES, MEASURES
 
 NO_FIELD = "This bone does not deform the mesh, so it has no distance field."
 PATH = "Click the body to draw the shortest path from there to the bone."

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-import cutcell
 from cutcell.rig import Rig
 from cutcell_lab.baselines.measured_distance import Measure, MeasuredDistance, mean_error
 from cutcell_viewers.character import to_scene
@@ -22,8 +21,8 @@ from cutcell_viewers.palette import BODY
 
 from ...derive.memo import Memo
 from ...document.state import State
-from ..character import BODY_OPACITY_WITH_PATH, character
-from .choices import CONVERGED, MEASURES
+from ...looks.character import BODY_OPACITY_WITH_PATH, character
+from ...looks.measures import CONVERGED, MEASURES
 
 WAITING = 0.28
 """Opacity of a body without distances."""
@@ -86,13 +85,6 @@ def title_of(name: Measure, resolution: int) -> str:
     elif name not in WITH_RESOLUTION:
         return MEASURES[name]
     return f"{MEASURES[name]}, R = {resolution}"
-
-
-def method_of(state: State, resolution: int) -> cutcell.Method:
-    """Return the method of measures side by side."""
-    return cutcell.ANIMATION.with_options(
-        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
-    )
 
 
 def _path(state: State, memo: Memo, name: str, one: MeasuredDistance) -> Any:

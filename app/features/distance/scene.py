@@ -3,7 +3,6 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell.geodesics import trace_path
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.distance_scene import distance_colors, distance_limits, file_units
 from cutcell_viewers.marks import path_tube
@@ -11,9 +10,11 @@ from cutcell_viewers.palette import BODY, MARK, SOURCE
 from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ...derive.memo import Memo
+from ...document.framing import theme_of
 from ...document.state import State
-from ..character import BODY_OPACITY_WITH_PATH, character, cut_of, has_field, in_scene, theme_of
-from ..graph.section import field_section, winding_section
+from ...looks.character import BODY_OPACITY_WITH_PATH, character, cut_of, has_field, in_scene
+from ...looks.paths import path_of
+from ...looks.section import field_section, winding_section
 from .measures import side_by_side
 
 
@@ -87,15 +88,6 @@ def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]
     first = first_distances(distances, joint)
     most = float(first.max(initial=0))
     return parts, (SOURCE, f"{len(first)} sources, up to {file_units(most, rig)} from the bone")
-
-
-def path_of(state: State, memo: Memo) -> Any:
-    """Return the shortest path from the clicked vertex to the bone (p, 3), or None."""
-    field = state.field
-    if not state.path or state.vertex is None or field is None:
-        return None
-    inputs = state.binding.distances, state.joint, state.vertex, field
-    return memo("path", inputs, lambda: trace_path(*inputs).points)
 
 
 def farthest(state: State) -> float | None:

@@ -12,10 +12,9 @@ from cutcell_viewers.short_names import short_names
 
 from ...derive.derived import Derived
 from ...derive.jobs import DESCRIBING
+from ...document.method import READABLE
 from ...document.state import State
-from ..character import has_field
-from ..graph.choices import READABLE
-from ..learn.steps import asks_to_act
+from ...looks.character import has_field
 
 METHOD = ("connectivity", "winding_threshold", "orient")
 
@@ -24,7 +23,7 @@ def _inputs(state: State) -> tuple[Any, ...] | None:
     if state.rig is None:
         return None
     # A section that is replaced loses what a person has chosen in it.
-    if asks_to_act(state) and state.binding is None and state.rig.skeleton.deform.any():
+    if state.lesson_task == "open" and state.binding is None and state.rig.skeleton.deform.any():
         return None
     return (
         state.rig,

@@ -7,11 +7,8 @@ from typing import Any
 
 import param
 
-from ...document.method import GRAPH, choices_of
-from ..panel import Panel
-
-READABLE = 40
-"""Lattice cells along the longest side of a graph that is easy to read on a screen."""
+from ...document.method import GRAPH, READABLE, choices_of
+from ...document.state import Panel
 
 MODULES = {"open3d": "open3d", "embree": "embreex", "fast": "igl"}
 """Libraries that also cast rays or compute winding numbers, and the module of each."""

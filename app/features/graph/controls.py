@@ -8,13 +8,13 @@ import panel_material_ui as pmui
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell_viewers.palette import to_hex
 
-from ...document.method import GRAPH
+from ...document.framing import theme_of
+from ...document.method import GRAPH, READABLE
 from ...document.state import State
+from ...editing.binding.recovery import CHAIN
+from ...looks.cut_controls import CUTTING
 from ...widgets import controls as ui
-from ..character import theme_of
-from ..cut.controls import CUTTING
-from ..weights.recovery import CHAIN
-from .choices import LAYERS, READABLE
+from .choices import LAYERS, Choices
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 PLACED = ("resolution", "winding_threshold", "orient", "connectivity")
@@ -68,7 +68,7 @@ def _resolutions(state: State) -> dict[str, int]:
 
 def _library(name: str, title: str) -> Any:
     """Return the choice of a library, if there is another one."""
-    return ui.choice(name, title) if len(State.param[name].objects) > 1 else []
+    return ui.choice(name, title) if len(Choices.param[name].objects) > 1 else []
 
 
 def _whole(state: State) -> bool:

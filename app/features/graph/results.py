@@ -2,7 +2,7 @@
 
 from ...derive.derived import Derived
 from ...derive.jobs import COMPUTING, DESCRIBING
-from .choices import READABLE
+from ...document.method import READABLE
 from .scene import build_shown
 
 RESULTS = (

@@ -22,11 +22,12 @@ from cutcell_viewers.ray_slice import RaySlice, slice_rays
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ...derive.memo import Memo
+from ...document.framing import theme_of
 from ...document.state import State
-from ..character import GRAPH_BODY_OPACITY, cells_of, character, cut_of, theme_of
-from ..distance.scene import path_of
+from ...looks.character import GRAPH_BODY_OPACITY, cells_of, character, cut_of
+from ...looks.paths import path_of
+from ...looks.section import field_section, winding_section
 from .choices import LAYERS
-from .section import field_section, winding_section
 
 FACE_OPACITY = 0.82
 """Opacity of the face of a cut, so that the edges behind it are visible."""

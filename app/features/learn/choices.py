@@ -4,7 +4,7 @@ from typing import Any
 
 import param
 
-from ..panel import Panel
+from ...document.state import Panel
 from .lesson import Step, built_in
 
 PANEL = Panel(
@@ -22,9 +22,18 @@ class Choices(param.Parameterized):
     lesson: Any = param.Parameter(built_in(), doc="A `Lesson`.")
     step = param.Integer(-1, doc="The step that is shown; -1 for none.")
     answers = param.Dict({}, doc="Answers by step; a step without one is not revealed.")
+    acted: Any = param.Parameter(None, doc="The answer by an act in the picture.")
     staged = param.Boolean(False, doc="Whether the lesson is presented, without the sidebar.")
 
     @property
     def lesson_step(self) -> Step | None:
         """The step that is shown, or None."""
         return self.lesson[self.step] if 0 <= self.step < len(self.lesson) else None
+
+    @property
+    def lesson_task(self) -> str:
+        """Whether an act in the picture that the step asks for is "open" or "done"; else ""."""
+        step = self.lesson_step
+        if step is None or step.answer.kind != "act":
+            return ""
+        return "done" if self.step in self.answers else "open"

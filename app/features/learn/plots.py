@@ -11,7 +11,7 @@ from cutcell.weights.paper_kernel import paper_kernel
 from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.short_names import short_names
 
-from ..distance.choices import CONVERGED, MEASURES
+from ...looks.measures import CONVERGED, MEASURES
 
 POINTS = 80
 MAX_MARKS = 6

@@ -1,5 +1,5 @@
 """The scene of the panel Learn: the character with its weights."""
 
-from ..weights.scene import scene
+from ...looks.weights import scene
 
 __all__ = ["scene"]

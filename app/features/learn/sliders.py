@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from ...document.session import Session
-from ..distance.choices import RESOLUTIONS as COMPARED
+from ...looks.measures import RESOLUTIONS as COMPARED
 
 RESOLUTIONS = [(n, str(n)) for n in (8, 12, 16, 20, 24, 32, 40, 48, 64, 96, 128)]
 HUNDREDTHS = [(n / 100, f"{n / 100:g}") for n in range(101)]

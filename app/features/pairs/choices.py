@@ -13,7 +13,7 @@ import param
 from cutcell.rig import Rig
 from cutcell_lab.dataset import Audit, Pair
 
-from ..panel import Panel
+from ...document.state import Panel
 
 TIERS = {
     "All": "all",

@@ -11,8 +11,9 @@ from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.weights_scene import weight_colors
 
 from ...derive.memo import Memo
+from ...document.framing import bounds_of
 from ...document.state import State
-from ..character import bounds_of, plain
+from ...looks.character import plain
 
 
 def scene(state: State, memo: Memo) -> Description:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
-from ..panel import Panel
+from ...document.state import Panel
 
 PANEL = Panel(
     "Pose",

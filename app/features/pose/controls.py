@@ -10,10 +10,11 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
 from ...document.state import State
+from ...editing.brush.controls import BRUSH
+from ...editing.select.controls import SELECTION
+from ...looks.pose_controls import REST, play
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
-from ..brush.controls import BRUSH
-from ..select.controls import SELECTION
 from . import results as actions
 from .scene import error_of, has_rival
 
@@ -126,7 +127,6 @@ def _worst(state: State) -> list[Any]:
     return [] if state.errors is None else state.errors.worst(WORST)
 
 
-REST = ui.button("Rest pose", actions.rest, disabled=lambda s: not s.posed)
 CONTROLS = ui.column(
     ui.intro("Pose bones by hand or play a motion."),
     ui.section(
@@ -136,7 +136,7 @@ CONTROLS = ui.column(
         "",
         ui.pick("Motion", _motions, lambda s: s.clip, _choose_motion),
         ui.choice("axis", visible=lambda s: s.clip < 0),
-        ui.play_button(actions.play, variant="contained"),
+        ui.play_button(play, variant="contained"),
         top=2,
     ),
     ui.section(

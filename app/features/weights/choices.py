@@ -7,10 +7,8 @@ from typing import Any
 import param
 
 from ...document.method import WEIGHTS, choices_of
-from ..panel import Panel
-
-MOST = 8
-"""Influences that a vertex is measured for, and the most that can be chosen."""
+from ...document.state import Panel
+from ...editing.binding.bound import MOST
 
 SHOWN = ("bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry")
 

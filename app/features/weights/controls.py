@@ -6,14 +6,14 @@ import numpy as np
 
 from ...document.method import WEIGHTS
 from ...document.state import State
+from ...editing.brush.controls import BRUSH
+from ...editing.correct.component_controls import COMPONENTS
+from ...editing.correct.controls import EDITS
+from ...editing.correct.joint_controls import JOINTS
+from ...editing.layers.controls import LAYERS
+from ...editing.select.controls import SELECTION, WEIGHT_SCALE
+from ...editing.symmetry.controls import PAIRS, SYMMETRY
 from ...widgets import controls as ui
-from ..brush.controls import BRUSH
-from ..correct.component_controls import COMPONENTS
-from ..correct.controls import EDITS
-from ..correct.joint_controls import JOINTS
-from ..layers.controls import LAYERS
-from ..select.controls import SELECTION, WEIGHT_SCALE
-from ..symmetry.controls import PAIRS, SYMMETRY
 
 SHOWN = {
     "All bones": "mix",

@@ -7,7 +7,7 @@ import pytest
 
 import cutcell
 from cutcell.errors import ParameterError, WeightsError
-from cutcell_app.editing.condition import vertices_where
+from cutcell_app.editing.compute.condition import vertices_where
 from tests.bars import bar
 
 NAMES = ("hand.L", "hand", "Left Arm and more", 'the "big" toe', "hand.L.001")

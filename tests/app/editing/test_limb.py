@@ -6,7 +6,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from cutcell import Rig, Skeleton, TriangleMesh
-from cutcell_app.editing.limb import DIRECTIONS, cross_section_centre
+from cutcell_app.editing.compute.limb import DIRECTIONS, cross_section_centre
 
 
 @pytest.mark.parametrize("sections", [4, 12, 32, DIRECTIONS])

@@ -10,8 +10,8 @@ from cutcell.editing.selections import Neighbours
 from cutcell.editing.symmetry import Mirror, find_mirror
 from cutcell.errors import ParameterError, WeightsError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell_app.editing import operations as ops
-from cutcell_app.editing.selected import Selected
+from cutcell_app.editing.compute import operations as ops
+from cutcell_app.editing.compute.selected import Selected
 from tests.app.small import small_rig
 from tests.bars import bar, grid_box, legs
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell.rig import TriangleMesh
-from cutcell_app.editing.reach import SurfaceReach
+from cutcell_app.editing.compute.reach import SurfaceReach
 from tests import meshes, naive
 
 

@@ -8,13 +8,15 @@ import pytest
 import cutcell
 import cutcell_lab
 from cutcell.runtime.progress import silent
-from cutcell_app.document.state import State
-from cutcell_app.features.compare.choices import NOW, offered
+from cutcell_app.derive.memo import Memo
+from cutcell_app.document.side_by_side import NOW, offered
 from cutcell_app.features.compare.controls import FIELD, about, rows_of
 from cutcell_app.features.compare.results import Compared, choose, measured
-from cutcell_app.features.compare.scene import WAITING, caption_of, field_shown, title_of
+from cutcell_app.features.compare.scene import WAITING, caption_of, field_shown
 from cutcell_app.features.learn.lesson import Answer, Lesson, Step
-from cutcell_app.features.scenes import Memo, resolve
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.state import PageState
+from cutcell_app.looks.methods import title_of
 from cutcell_app.widgets.controls import draw
 from cutcell_lab.baselines import METHODS, BaselineBinding
 from cutcell_lab.metrics import deformation_error, weight_l1
@@ -27,7 +29,7 @@ def euclidean(rig, binding):
 
 @pytest.fixture
 def state(rig, binding, euclidean):
-    return State(
+    return PageState(
         rig=rig, binding=binding, joint=1, panel="compare", methods=[NOW, "artist", "euclidean"],
         compared={"euclidean": euclidean},
     )  # fmt: skip
@@ -191,9 +193,9 @@ def test_a_memo_keeps_what_did_not_change(state):
 
 
 def test_without_the_files_own_weights_no_error_is_promised(rig):
-    assert about(State()) == about(State(rig=rig))
-    assert about(State(rig=rig)).endswith("against the original weights.")
-    assert "no weights" in about(State(rig=rig.with_weights(None)))
+    assert about(PageState()) == about(PageState(rig=rig))
+    assert about(PageState(rig=rig)).endswith("against the original weights.")
+    assert "no weights" in about(PageState(rig=rig.with_weights(None)))
 
 
 def test_without_weights_of_its_own_no_error_is_offered_or_shown(state, rig, binding):

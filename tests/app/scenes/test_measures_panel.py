@@ -5,15 +5,16 @@ import pytest
 
 import cutcell
 from cutcell_app.derive.derived import compute_wanted
+from cutcell_app.derive.memo import Memo
 from cutcell_app.document import loading
 from cutcell_app.document.address import from_query, to_query
-from cutcell_app.document.state import State
-from cutcell_app.features.distance.choices import MEASURES as NAMED
 from cutcell_app.features.distance.measures import WAITING
 from cutcell_app.features.distance.results import RESULTS
 from cutcell_app.features.distance.scene import farthest, wants_field
-from cutcell_app.features.scenes import Memo, following, resolve
-from cutcell_app.features.weights.facts import vertex_facts
+from cutcell_app.features.inspector.facts import vertex_facts
+from cutcell_app.features.scenes import following, resolve
+from cutcell_app.features.state import PageState
+from cutcell_app.looks.measures import MEASURES as NAMED
 from cutcell_lab.baselines.measured_distance import (
     MEASURES,
     mean_error,
@@ -26,7 +27,7 @@ from tests.viewers.arm import arm_rig
 
 @pytest.fixture
 def state(rig, binding):
-    state = State(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)
+    state = PageState(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)
     state.param.update(beside_straight=True, beside_voxel=True, beside_any=True)
     compute_wanted(state, RESULTS)
     return state
@@ -70,7 +71,7 @@ def test_from_a_clicked_vertex_each_draws_its_path(state):
 
 def test_a_distance_is_one_number_in_caption_legend_and_card(rig, binding):
     """The path that is drawn may be shorter or longer by a cell."""
-    state = State(rig=rig, binding=binding, joint=2, panel="distance", vertex=0)
+    state = PageState(rig=rig, binding=binding, joint=2, panel="distance", vertex=0)
     state.param.update(resolution=16, beside_resolution=16, beside_any=True)
     compute_wanted(state, RESULTS)
     (caption,) = resolve(state).views
@@ -139,7 +140,7 @@ def test_four_at_most_and_the_address_knows_them(state, rig):
     assert set(NAMED) == set(MEASURES)
     state.param.update(beside_6=True, beside_26=True, beside_surface=True)
     assert len(state.measures) == 4
-    choices = from_query(to_query(state), State())[0]
+    choices = from_query(to_query(state), PageState())[0]
     assert choices["beside_26"] is True
     assert choices["beside_resolution"] == 16
 

@@ -7,10 +7,12 @@ from hypothesis import strategies as st
 
 import cutcell
 from cutcell.pose import axis_rotation
-from cutcell_app.document.state import State
+from cutcell_app.derive.memo import Memo
 from cutcell_app.features.pose.errors import scene_error
-from cutcell_app.features.pose.scene import VIEWS, angles_of, error_of, gizmo_part, rotation_of
-from cutcell_app.features.scenes import Memo, resolve
+from cutcell_app.features.pose.scene import VIEWS, error_of, gizmo_part
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.state import PageState
+from cutcell_app.looks.pose import angles_of, rotation_of
 from cutcell_app.widgets.changes import changes
 from cutcell_lab.metrics import deformation_error
 from cutcell_viewers.character import pose_in_scene
@@ -23,7 +25,7 @@ angle = st.floats(-180, 180)
 
 @pytest.fixture
 def state(rig, binding):
-    return State(rig=rig, binding=binding, joint=1, panel="pose")
+    return PageState(rig=rig, binding=binding, joint=1, panel="pose")
 
 
 @given(angle, angle, angle)
@@ -63,7 +65,7 @@ def test_a_ghost_is_seen_through_and_a_neighbour_has_a_view(state):
 
 def test_without_the_files_weights_there_is_nothing_to_compare(rig, binding):
     bare = rig.with_weights(None)
-    state = State(rig=bare, binding=binding, panel="pose", rival="beside", heat=True)
+    state = PageState(rig=bare, binding=binding, panel="pose", rival="beside", heat=True)
     scene = resolve(state)
     assert "rival" not in scene.actors
     assert "mixed by weight" in scene.legend.title  # the colours of the weights, not of an error

@@ -6,19 +6,22 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell_app.document.state import PANELS, State
-from cutcell_app.features.character import GRAPH_BODY_OPACITY, bones_part, cells_of, first_joint
+from cutcell_app.derive.memo import Memo
+from cutcell_app.document.framing import bones_part, first_joint
 from cutcell_app.features.distance.scene import wants_field
 from cutcell_app.features.graph.choices import LAYERS
 from cutcell_app.features.graph.scene import build_shown
-from cutcell_app.features.pose.scene import clip_of, clip_part, pose_of
-from cutcell_app.features.scenes import RIGID, Memo, following, resolve
+from cutcell_app.features.pose.scene import clip_part
+from cutcell_app.features.scenes import RIGID, following, resolve
+from cutcell_app.features.state import PANELS, PageState
+from cutcell_app.looks.character import GRAPH_BODY_OPACITY, cells_of
+from cutcell_app.looks.pose import clip_of, pose_of
 from cutcell_viewers.palette import DARK, LIGHT
 
 
 @pytest.fixture
 def state(rig, binding):
-    return State(rig=rig, binding=binding, joint=1, resolution=16, graph_resolution=0)
+    return PageState(rig=rig, binding=binding, joint=1, resolution=16, graph_resolution=0)
 
 
 def visible(state):
@@ -26,12 +29,12 @@ def visible(state):
 
 
 def test_without_a_character_there_is_an_empty_scene():
-    assert resolve(State()).actors == {}
+    assert resolve(PageState()).actors == {}
 
 
 @pytest.mark.parametrize("panel", sorted(set(PANELS) - {"weights", "pose", "learn"}))
 def test_before_anything_is_computed_the_character_stands_there_plain(rig, panel):
-    scene = resolve(State(rig=rig, panel=panel))
+    scene = resolve(PageState(rig=rig, panel=panel))
     assert set(scene.actors) == {"body", "bones", "bone outlines", "attachment 0"}
     assert scene.actors["body"].scalars is None
     assert scene.actors["body"].colors is None
@@ -40,10 +43,10 @@ def test_before_anything_is_computed_the_character_stands_there_plain(rig, panel
 
 @pytest.mark.parametrize("panel", ["weights", "pose", "learn"])
 def test_before_anything_is_computed_the_files_own_weights_are_seen(rig, panel):
-    scene = resolve(State(rig=rig, panel=panel, weights_shown="bone", joint=1))
+    scene = resolve(PageState(rig=rig, panel=panel, weights_shown="bone", joint=1))
     np.testing.assert_allclose(scene.actors["body"].scalars, rig.weights[:, 1], atol=1e-6)
     assert scene.legend.title.startswith("In the file")
-    plain = resolve(State(rig=rig.with_weights(None), panel=panel))
+    plain = resolve(PageState(rig=rig.with_weights(None), panel=panel))
     assert plain.actors["body"].scalars is None
     assert plain.legend is None
 
@@ -176,7 +179,7 @@ def test_the_distance_on_the_surface(state, binding):
 
 
 def test_the_graph_opens_cut_away_with_all_its_kinds_and_easy_to_read(rig, binding):
-    state = State(rig=rig, binding=binding, panel="graph", resolution=16)
+    state = PageState(rig=rig, binding=binding, panel="graph", resolution=16)
     assert not visible(state) & set(LAYERS.values()) - {"body"}  # it is still to be built
     state.easy_graph = build_shown(state.graph_inputs)
     seen = visible(state)

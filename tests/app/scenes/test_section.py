@@ -7,8 +7,9 @@ import pytest
 
 import cutcell
 from cutcell.diagnosis.finding import Finding, Pose
-from cutcell_app.document.state import State
-from cutcell_app.features.scenes import Memo, resolve
+from cutcell_app.derive.memo import Memo
+from cutcell_app.features.scenes import resolve
+from cutcell_app.features.state import PageState
 from cutcell_viewers.finding_scene import camera_on, camera_on_marks
 from tests.viewers.arm import arm_rig
 
@@ -16,7 +17,7 @@ from tests.viewers.arm import arm_rig
 @pytest.fixture(scope="module")
 def state():
     rig = arm_rig()
-    state = State(rig=rig, panel="distance")
+    state = PageState(rig=rig, panel="distance")
     state.binding = cutcell.bind(rig, 16)
     distances = state.binding.distances
     state.joint = 1

@@ -1,0 +1,69 @@
+"""Distances of a character, and weights of many influences that are computed with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from scipy.sparse import csr_array
+
+import cutcell
+from cutcell.binding import Binding
+from cutcell.binding.stages import bind_base
+from cutcell.editing import Computed
+from cutcell.graph import CutCellGraph
+from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
+from cutcell.runtime.threads import cancellable
+
+graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
+"""How long each graph took."""
+
+
+@dataclass(frozen=True, eq=False)
+class Influences:
+    """Weights of many influences: sparse, as most of an (n, j) matrix is zero; and their options.
+
+    `strongest` has the few that were kept last, by greatest number and threshold: most changes are
+    of layers.
+    """
+
+    options: dict[str, Any]
+    weights: csr_array
+    strongest: dict[tuple[Any, ...], csr_array] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Bound:
+    """Distances of the open character, and the weights that were computed with them.
+
+    The weights are those of `influences`; the binding has none.
+    """
+
+    binding: Binding
+    influences: Influences
+
+
+def bind_wide(
+    rig: Rig,
+    graph: CutCellGraph,
+    reach: Computed,
+    options: dict[str, Any],
+    falloff: dict[str, Any],
+    progress: Progress,
+) -> Bound:
+    """Compute distances, and weights of many influences."""
+    method = cutcell.ANIMATION.with_options(**options)
+
+    def work(report: Progress) -> Binding:
+        return bind_base(rig, method, reach, graph, progress=report, scaled=False)
+
+    wide = cancellable(work, progress, "distances")
+    seconds = {**wide.seconds, "graph": graph_seconds.get(graph, 0.0)}
+    binding = replace(wide, rows=csr_array((0, len(rig.skeleton.names))), seconds=seconds)
+    return Bound(binding, Influences(falloff, wide.rows))
+
+
+MOST = 8
+"""Influences that a vertex is measured for, and the most that can be chosen."""

@@ -1,0 +1,27 @@
+"""The choice of a cutting plane, and what moves and turns it."""
+
+from typing import Any
+
+from ..widgets import controls as ui
+from .cut import face_the_eye
+
+AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
+
+
+def _free(state: Any) -> bool:
+    return bool(state.cut_axis == "free")
+
+
+def _cut(state: Any) -> bool:
+    return bool(state.cut_across != "off")
+
+
+CUTTING = (
+    ui.choice("cut_axis", options=AXES, value=lambda s: s.cut_across),
+    ui.slider("cut_position", visible=_cut),
+    ui.slider("cut_yaw", format="0°", visible=_free),
+    ui.slider("cut_pitch", format="0°", visible=_free),
+    ui.button("Face camera", face_the_eye, visible=_free),
+    ui.caption("Or drag its handles in the scene.", visible=_cut),
+)
+"""Rows: a plane, where it lies, and where a free one looks to."""
