@@ -113,7 +113,8 @@ def voxel_skin(
     given = np.asarray(vertices), np.asarray(joints)
     mesh = TriangleMesh(np.asarray(given[0], np.float64), np.asarray(faces))
     skeleton = Skeleton(np.asarray(given[1], np.float64), _parents(parents, len(given[1])))
-    dtype = np.float64 if np.float64 in (given[0].dtype, given[1].dtype) else np.float32
+    is_double = np.float64 in (given[0].dtype, given[1].dtype)
+    dtype: type[np.floating] = np.float64 if is_double else np.float32
     if cache is None:
         return _prior(mesh, skeleton, method, alpha, mode).astype(dtype)
     path = Path(cache) / f"{_digest(mesh, skeleton, method, alpha, mode, dtype)}.npy"
