@@ -224,9 +224,14 @@ def damage_table(scores: Sequence[Score], measure: str, title: str) -> Table:
             }
             gain = values["voxels"] - values["cut-cell"]
             gain = gain[np.isfinite(gain)]
-            medians = [f"{np.nanmedian(values[name]):.3f}" for name in names]
+            medians = [_median(values[name]) for name in names]
             table.add(damage, strength, *medians, f"{(gain > 0).sum()} : {(gain < 0).sum()}")
     return table
+
+
+def _median(values: NDArray[np.float64]) -> str:
+    finite = values[np.isfinite(values)]
+    return f"{np.median(finite):.3f}" if len(finite) else "-"
 
 
 def worst_table(scores: Sequence[Score]) -> Table:
