@@ -2,9 +2,9 @@
 
     .venv/bin/python scripts/resolve.py
 
-It prints a table: "yes" where every dependency has a wheel, else the first one that has none. Markers
-are evaluated for the other system, which pip's own `--platform` does not do: uv does, from an
-environment that is thrown away. The indexes of pip's configuration are asked.
+It prints a table: "yes" where every dependency has a wheel, else the first one that has none.
+Markers are evaluated for the other system, which pip's own `--platform` does not do: uv does, from
+an environment that is thrown away. The indexes of pip's configuration are asked.
 """
 
 import re
