@@ -11,6 +11,7 @@ from cutcell_assets import DEMOS
 
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
+from ..messages.received import Visit
 from ..server.messages import visible_text
 from .address import from_query, with_scene
 from .opening import Opening, Request, commit
@@ -91,7 +92,7 @@ def receiver(session: Session) -> Receiver:
 
 def watch(session: Session) -> None:
     """Go back and on to addresses of this page, as the browser's buttons say."""
-    session.view.listen("visit", lambda message: visit(session, str(message["query"])))
+    session.view.listen(Visit, lambda message: visit(session, message.query))
 
 
 def visit(session: Session, query: str) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 from cutcell.errors import CutcellError
 
+from ..messages.sent import ToBrowser
 from .address import NOTED, simple, snapshot, to_query
 from .document import Document, put
 from .session import Session
@@ -51,7 +52,7 @@ def publish(session: Session, again: bool = False) -> None:
     if session.state.rig is None:
         return
     text, step, panel = query(session), session.state.lesson_step, session.state.panel
-    message = {
+    message: ToBrowser = {
         "address": "?" + text,
         "link": "?" + (text if step is None or step.shows(panel) else OF_STEP.sub("", text)),
         "able": [session.history.can_undo, session.history.can_redo],

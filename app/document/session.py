@@ -5,7 +5,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar, Unpack
 
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
@@ -18,14 +18,13 @@ from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
+from ..messages.received import Message
+from ..messages.sent import ToBrowser
 from ..server.messages import error_text
 from .document import Document, History
 from .state import State
 
 logger = logging.getLogger("cutcell.app")
-
-Resolve = Callable[[State, Memo], Description]
-"""Returns the scene of a state; a memo speeds up a series of calls."""
 
 WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
@@ -41,6 +40,9 @@ class BeforeLesson:
     tools: dict[str, Any]
 
 
+M = TypeVar("M", bound=Message)
+
+
 class View(Protocol):
     """Interface of the 3D view for commands; see `widgets.view.SceneView`."""
 
@@ -52,13 +54,13 @@ class View(Protocol):
     time: float
     calm: bool
 
-    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+    def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
 
-    def present(self, description: Description) -> None:
-        """Show a scene."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a scene, together with parts of the view that belong to it."""
 
-    def send(self, **parts: Any) -> None:
+    def send(self, **parts: Unpack[ToBrowser]) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
 
     def last_sent(self, name: str) -> Any:
@@ -67,7 +69,7 @@ class View(Protocol):
     def offer(self, name: str, content: bytes) -> None:
         """Send a file to the browser, which saves it."""
 
-    def answer(self, **message: Any) -> None:
+    def answer(self, **message: Unpack[ToBrowser]) -> None:
         """Answer a request of the browser."""
 
 
@@ -80,8 +82,6 @@ class Session:
     schedule : callable
         See `derive.jobs.Schedule`.
     state : State
-    resolve : callable
-        Returns the scene of a state; see `features.scenes.resolve`.
 
     Attributes
     ----------
@@ -91,7 +91,6 @@ class Session:
         What a person has started: openings, repairs, templates.
     engine : Engine
         It keeps the results up to the state.
-    memo : Memo
     history : History
     uploads : PageUploads
     source : str
@@ -109,14 +108,12 @@ class Session:
         Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
-    def __init__(self, view: View, schedule: Schedule, state: State, resolve: Resolve) -> None:
+    def __init__(self, view: View, schedule: Schedule, state: State) -> None:
         self.state = state
         self.view = view
-        self.resolve = resolve
         self.work = Work(schedule, self.fail, self.show_progress)
         self.tasks = Tasks(self.work, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)
-        self.memo = Memo()
         self.history = History()
         self.uploads = PageUploads(UPLOADS)
         self.source = ""
@@ -165,6 +162,11 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
+
+    @property
+    def memo(self) -> Memo:
+        """Costly steps of what is shown of the state."""
+        return self.state.memo
 
     @property
     def folder(self) -> Path:

@@ -132,7 +132,7 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
         sizing_mode="stretch_both",
         margin=0,
         styles={"position": "relative"},
-        stylesheets=[style("stage_place")],
+        stylesheets=[style("page/stage_place")],
     )
     main = pmui.Column(
         *([Welcome(session, sizing_mode="stretch_width")] if greeting else []),
@@ -150,7 +150,7 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
         sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),
         main=[main],
         busy_indicator=None,
-        raw_css=[style("loader")],
+        raw_css=[style("page/loader")],
         theme_config=THEME,
         sx=PAGE_STYLE,
         favicon=FAVICON,

@@ -336,7 +336,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert sum(row["ours"] for row in tree.rows) == pytest.approx(1)
     assert sum(row["file"] for row in tree.rows) == pytest.approx(1)
     assert len({row["color"] for row in tree.rows}) == 3
-    tree._handle_msg({"type": "choose", "joint": 2})
+    tree._handle_msg({"type": "pick", "joint": 2})
     assert bound.state.joint == tree.chosen == 2
     carries, locked, *_ = section.select(pmui.Switch)
     carries.value = False
@@ -441,10 +441,10 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 1 · {first}",
         f"Part 2 · {len(vertices) - first}",
     ]
-    rows._handle_msg({"row": 0})
+    rows._handle_msg({"type": "pick-row", "row": 0})
     loop.rest(session)
     assert "attached" not in way.options.values(), "the body cannot follow itself"
-    rows._handle_msg({"row": 1})
+    rows._handle_msg({"type": "pick-row", "row": 1})
     loop.rest(session)
     assert "attached" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
@@ -466,7 +466,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
     way.value = ""
     assert not session.state.edits
-    rows._handle_msg({"row": 1})
+    rows._handle_msg({"type": "pick-row", "row": 1})
     assert session.state.part is None
 
 

@@ -147,11 +147,11 @@ def test_the_methods_that_are_compared_are_in_the_address_and_can_be_undone(sess
     assert "second_method=now" in session.view.last_sent("address")
     keys.act(session, "undo")
     assert disagreeing.pair_of(state) == ("euclidean", "artist")
-    visit = session.view._listeners["visit"]  # the browser's Back, to an address without and with
-    visit({"query": address})
+    # The browser's Back, to an address without and with a pair.
+    session.view._handle_msg({"type": "visit", "query": address})
     loop.run_until(lambda: "first_method" not in session.view.last_sent("address"))
     assert disagreeing.pair_of(state) == ("now", "artist")
-    visit({"query": address + pair})
+    session.view._handle_msg({"type": "visit", "query": address + pair})
     loop.run_until(lambda: pair in session.view.last_sent("address"))
     assert disagreeing.pair_of(state) == ("euclidean", "artist")
     comparing.choose(session, "euclidean", False)

@@ -362,11 +362,10 @@ def test_a_character_that_a_person_opens_in_the_lesson_stays_when_it_is_left(ses
 def test_back_and_forward_return_to_steps_with_their_scenes_and_answers(session, loop):
     """The browser's buttons name an address that the page made, with or without a step."""
     state = session.state
-    visit = session.view._listeners["visit"]
     before = "?rig=robot&panel=weights&bone=hips&resolution=16"
     asked = "?rig=biped_cape&panel=distance&bone=chest&resolution=16&step=12"
     for query, step in ((before, -1), (asked, 11), (f"{asked}&answer=x", 11), (asked, 11)):
-        visit({"query": query})
+        session.view._handle_msg({"type": "visit", "query": query})
         loop.rest(session)
         assert state.rig.name == ("robot" if step < 0 else "biped_cape")
         assert state.step == step
@@ -415,7 +414,7 @@ def test_paint_stays_on_its_step(session, loop, way):
     if way == "leave":
         go(session, -1)
     elif way == "back":
-        session.view._listeners["visit"]({"query": address})
+        session.view._handle_msg({"type": "visit", "query": address})
     else:
         go(session, FALLOFF)
     loop.rest(session)

@@ -16,7 +16,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 LAYERS = (
-    {"derive", "server"},
+    {"derive", "messages", "server"},
     {"files"},
     {"document"},
     {"widgets"},

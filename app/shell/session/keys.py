@@ -16,14 +16,15 @@ from ...editing.brush import strokes as brush
 from ...editing.select import actions as selecting
 from ...features.learn.writing import save_view
 from ...features.pairs import results as pairs
+from ...messages.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
 
 
 def watch(session: Session) -> None:
-    """Obey the keys."""
-    session.view.listen("act", lambda message: act(session, str(message.get("act"))))
+    """Connect the keys."""
+    session.view.listen(Act, lambda message: act(session, message.act))
 
 
 def act(session: Session, name: str) -> None:
