@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Iterator
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints, is_typeddict
 
@@ -44,7 +44,7 @@ def _lines() -> Iterator[str]:
 def _parts(shape: Any) -> str:
     hints = get_type_hints(shape)
     if is_dataclass(shape):
-        parts = [(one.name, one.default is not MISSING) for one in fields(shape)]
+        parts = [(one.name, one.default is not one.default_factory) for one in fields(shape)]
     else:
         parts = [(name, name in shape.__optional_keys__) for name in hints]
     return "; ".join(f"{name}{'?' * optional}: {_type(hints[name])}" for name, optional in parts)

@@ -153,7 +153,7 @@ class Hand:
             self._stroke = None
             session.view.answer(painted={"gone": True})
             return
-        points = np.asarray(message.points or ()).reshape(-1, 6)
+        points = np.asarray(message.points).reshape(-1, 6)
         corners = points[:, :3].astype(np.intp)
         if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
             stroke.pass_over(corners, points[:, 3:])

@@ -39,7 +39,7 @@ type FromBrowser =
   | {type: 'turn'; joint: number; axis: number; degrees: number; begin?: boolean}  // A ring is dragged.
   | {type: 'move-joint'; joint: number; position: Vector; done?: boolean}  // A joint is dragged in the scene.
   | {type: 'move-cut'; origin: Vector; normal: Vector}  // The cutting plane is dragged.
-  | {type: 'paint'; points?: number[] | null; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
+  | {type: 'paint'; points?: number[]; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
   | {type: 'lasso'; vertices: number[]; mode: string}  // A line was drawn around vertices.
   | {type: 'halt-wave'; front: number}  // The wavefront is halted at a part of the greatest distance.
   | {type: 'play'; on: boolean}  // The motion is played or paused.

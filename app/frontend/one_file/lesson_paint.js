@@ -18,7 +18,7 @@ export class Painted {
 
   /**
    * Adds what a piece of a stroke touches: what is nearer than the radius, along the surface.
-   * @param {{points?: number[], first?: boolean, mode?: string, cancelled?: boolean}} stroke
+   * @param {{points?: number[], first?: boolean, mode?: string | null, cancelled?: boolean}} stroke
    */
   pass({points = [], first, mode, cancelled}, radius) {
     if (first) { this.before = this.painted.slice() }

@@ -41,14 +41,17 @@ function fresh(part, before) {
   return Object.fromEntries(names.map((name) => [name, now[name]]))
 }
 
-// What a widget of the page hears of its server.
+/**
+ * What a widget of the page hears of its server.
+ * @param {{[T in FromBrowser["type"]]?: (message: Extract<FromBrowser, {type: T}>) => void}} acts
+ */
 export function standIn(acts, rest = {}) {
   const listeners = {}
   return {
     ...rest,
     on(name, act) { listeners[name] = act },
     set(name, value) { this[name] = value; listeners[name]?.() },
-    send_msg(message) { acts[message.type]?.(message) },
+    send_msg(message) { /** @type {any} */ (acts)[message.type]?.(message) },
   }
 }
 

@@ -32,7 +32,7 @@ class Page {
     this.joint = scenes.joint
     this.vertices = read(scenes.vertices)
     this.dark = matchMedia("(prefers-color-scheme: dark)")
-    const acts = {bone: ({joint}) => this.choose(joint), close: () => this.pick(null)}
+    const acts = {pick: ({joint}) => this.choose(joint), close: () => this.pick(null)}
     this.card = standIn(acts, {facts: null})
     const overlay = new Overlay()
     const main = element("main", {}, overlay.root, inspector({model: this.card}))
@@ -41,7 +41,7 @@ class Page {
       "pick": ({joint}) => this.choose(joint),
       "pick-vertex": ({vertex}) => this.pick(vertex),
       "play": ({on}) => this.send({playing: on}),
-      "cut": (cut) => this.follow(cut),
+      "move-cut": (cut) => this.follow(cut),
     }), vtk, overlay)
     this.player = new Player(this.view, read)
     window.__cutcell = Object.assign(this.view, probe(this.view))
