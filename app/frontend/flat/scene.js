@@ -67,7 +67,7 @@ export function flatScene(host) {
   const work = element("div", {className: "work"}, panel, space)
   const root = element("section", {className: "flat", hidden: true}, canvas, work)
 
-  const context = canvas.getContext("2d")
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"))
   const place = new FlatPlace()
   const drawing = new FlatDrawing(context, place)
   let now = {}

@@ -175,7 +175,7 @@ class LessonPage {
   }
 
   paint(stroke) {
-    const body = this.view.renderer.actors.get("body")
+    const body = /** @type {Actor} */ (this.view.renderer.actors.get("body"))
     this.strokes ??= new Painted(body)
     this.strokes.pass(stroke, this.record.views[this.name].messages[0].brush.radius)
     const {actors} = this.record.views[this.name].messages[Number(this.dark.matches)]

@@ -13,7 +13,7 @@ export class Painted {
     this.place = welded(this.points, this.count)
     this.beside = neighbours(body.triangles, this.place)
     this.painted = new Uint8Array(this.count)
-    this.before = null
+    this.before = this.painted
   }
 
   /**

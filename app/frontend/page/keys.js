@@ -100,6 +100,11 @@ const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
 export class Keys {
+  /** @type {Record<string, HTMLButtonElement>} */
+  tools = {}
+  /** @type {any} */
+  card = null
+
   /** @param {Overlay} overlay */
   constructor(overlay, {act, link, turnable, painting}) {
     this.overlay = overlay
