@@ -5,7 +5,8 @@ A package may have these modules:
 - `choices.py`: the class `Choices`, a part of the state, and for a panel its record `PANEL`;
 - `results.py`: `RESULTS`, and `watch(session)`;
 - `scene.py`: `scene(state, memo)` of a panel;
-- `controls.py`: `CONTROLS` of a panel.
+- `controls.py`: `CONTROLS` of a panel;
+- `overlay.py`: `overlay(session)`, a widget over the canvas.
 """
 
 from importlib import import_module
@@ -26,8 +27,9 @@ PACKAGES = (
     "features.compare.disagreement",
     "features.compare.lab",
     "features.check",
-    "features.learn",
     "features.flat",
+    "features.inspector",
+    "features.learn",
     "features.pairs",
 )
 """In the order in which panels are offered. Results follow those of packages before them."""

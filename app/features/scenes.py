@@ -13,8 +13,6 @@ from ..document.state import State
 from . import modules
 from .state import PANELS
 
-__all__ = ["SCENES", "Memo", "following", "resolve"]
-
 SCENES: dict[str, Callable[[State, Memo], Description]] = {
     panel: module.scene for panel, module in modules("scene").items()
 }

@@ -19,10 +19,9 @@ from ..derive.jobs import Gate, on_its_thread
 from ..document import arrival
 from ..document.loading import load_demo, load_files
 from ..document.session import Session
-from ..features.flat.flat_scene import flat_scene
-from ..features.inspector.card import inspector
+from ..features import modules
 from ..features.learn.lesson import Lesson
-from ..features.learn.lesson_card import LessonNotes, lesson_card, steps_of
+from ..features.learn.overlay import LessonNotes, steps_of
 from ..features.learn.welcome import Welcome
 from ..features.pairs import results as pairs
 from ..features.pairs.choices import OpenedAudit
@@ -130,10 +129,8 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
     )
     canvas = pmui.Column(
         view,
-        flat_scene(session),
         messages(session),
-        inspector(session),
-        lesson_card(session),
+        *(module.overlay(session) for module in modules("overlay").values()),
         sizing_mode="stretch_both",
         margin=0,
         styles={"position": "relative"},

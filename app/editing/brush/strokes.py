@@ -29,8 +29,8 @@ STRONGER = 0.1
 def watch(session: Session) -> None:
     """Connect the brush of the view to the weights."""
     follow = session.state.param.watch
-    hand = Hand(session)
-    session.view.listen("brush", hand.paint)
+    controller = BrushController(session)
+    session.view.listen("brush", controller.paint)
     follow(lambda *events: take_up(session), "brush")
     follow(lambda event: put_down(session) if event.new else None, "joint_handle")
 
@@ -127,7 +127,7 @@ def invert_selection(session: Session) -> None:
         select(session, ~chosen)
 
 
-class Hand:
+class BrushController:
     """Paints as the pointer passes over the body.
 
     Parameters

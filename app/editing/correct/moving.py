@@ -24,9 +24,9 @@ DIGITS = 6
 def watch(session: Session) -> None:
     """Connect the handle to the chosen joint, and joints to the handle."""
     follow = session.state.param.watch
-    hand = Hand(session)
-    session.view.listen("joint", hand.move)
-    follow(lambda *events: hand.release(), ["rig", "binding", "panel"])
+    controller = JointController(session)
+    session.view.listen("joint", controller.move)
+    follow(lambda *events: controller.release(), ["rig", "binding", "panel"])
 
 
 def handle_part(session: Session) -> dict[str, Any] | None:
@@ -147,7 +147,7 @@ def digits_of(rig: Rig) -> int:
     return DIGITS - int(np.floor(np.log10(size)))
 
 
-class Hand:
+class JointController:
     """Moves joints as the handle in the view is dragged."""
 
     def __init__(self, session: Session) -> None:

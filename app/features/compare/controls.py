@@ -4,8 +4,9 @@ from typing import Any
 
 from ...document.side_by_side import FEWEST_VIEWS, MAX_VIEWS, listed
 from ...document.state import State
+from ...looks.controls import REST
 from ...looks.methods import title_of
-from ...looks.pose_controls import REST, play
+from ...looks.pose import play
 from ...widgets import controls as ui
 from . import results as actions
 from .disagreement.controls import DISAGREEMENT

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...document.session import Session
-from ...looks.cut_controls import CUTTING
+from ...looks.controls import CUTTING
 from ...looks.measures import MAX_MEASURES, MEASURES
 from ...widgets import controls as ui
 

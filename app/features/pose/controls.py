@@ -12,7 +12,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...editing.brush.controls import BRUSH
 from ...editing.select.controls import SELECTION
-from ...looks.pose_controls import REST, play
+from ...looks.controls import REST
+from ...looks.pose import play
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from . import results as actions

@@ -16,6 +16,7 @@ from ...editing.brush import strokes as brush
 from ...editing.select import actions as selecting
 from ...features.learn.writing import save_view
 from ...features.pairs import results as pairs
+from ...looks.pose import play
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
@@ -35,7 +36,7 @@ def act(session: Session, name: str) -> None:
         "reset": lambda: reset(session),
         "step": lambda: save_view(session),
         "rendered": lambda: state.param.update(rendered=not state.rendered),
-        "play": lambda: play(state),
+        "play": lambda: play(session),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),
         "frame": lambda: frame(session),
@@ -62,17 +63,6 @@ def reset(session: Session) -> None:
     changed = {**changes(state, rig, state.first_edits), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
     session.view.send(home=True)
-
-
-def play(state: State) -> None:
-    """Play the motion, or halt it; on the panel where things move."""
-    if state.bare:
-        return
-    if not state.moving or not state.open_panel.poses:
-        panel = state.panel if state.panel == "compare" else "pose"
-        state.param.update(panel=panel, moving=True, playing=True)
-    else:
-        state.playing = not state.playing
 
 
 def step(session: Session, count: int) -> None:

@@ -13,8 +13,8 @@ from ...editing.correct.moving import handle_part
 from ...editing.select.selections import lasso_part
 from ...features.distance.results import wave_part
 from ...features.pose.results import motion_part
-from ...features.pose.scene import gizmo_part
 from ...looks.cut import plane_part
+from ...looks.pose import gizmo_part
 
 PARTS: dict[str, Callable[[Session], Any]] = {
     "handles": plane_part,

@@ -62,7 +62,7 @@ def flat_colors(state: Any) -> dict[str, Any]:
     }
 
 
-def flat_scene(session: Session) -> FlatScene:
+def overlay(session: Session) -> FlatScene:
     """Return the flat scene of a session, in its place over the canvas."""
     row = Control(
         partial(FlatScene, session),

@@ -49,7 +49,7 @@ class Inspector(JSComponent):
         overrule(session, vertex, weights)
 
 
-def inspector(session: Session) -> Inspector:
+def overlay(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
     row = Control(
         partial(Inspector, session),

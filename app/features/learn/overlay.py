@@ -48,7 +48,7 @@ class LessonNotes(JSComponent):
     _esm = script("lesson_notes")
 
 
-def lesson_card(session: Session) -> LessonCard:
+def overlay(session: Session) -> LessonCard:
     """Return the card of a session's lesson."""
     row = Control(
         partial(LessonCard, session),
