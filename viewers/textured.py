@@ -59,7 +59,7 @@ def pieces(
 
 
 def cut_out(drawn: pv.Actor, wrap: int) -> None:
-    """Draw a piece opaquely, without what its image leaves out."""
+    """Draw a piece opaquely, without the transparent pixels of its image."""
     drawn.ForceOpaqueOn()
     code = DITHERED if wrap >= BLENDED else CUT_OUT
     replace_in_shader(drawn, "Fragment", ALPHA, code, early=False)
@@ -88,4 +88,4 @@ DITHERED = """//VTK::DepthPeeling::Impl
   if (gl_FragData[0].a < least) { discard; }
   gl_FragData[0].a = 1.0;
 """
-"""Draws the share of pixels that alpha gives, as the page does (frontend/materials.js)."""
+"""Draws the share of pixels that alpha gives, as the page does (frontend/engine/materials.js)."""

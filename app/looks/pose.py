@@ -1,7 +1,5 @@
 """Pose or motion of the character: as it is chosen, for the view, and commands."""
 
-from typing import Any
-
 import numpy as np
 
 from cutcell.pose import axis_rotation
@@ -11,6 +9,7 @@ from cutcell_viewers.pose_scene import joint_turns, swing
 
 from ..document.session import Session
 from ..document.state import State
+from ..messages.sent import Motion, Rings
 
 SWING_DEGREES = 50.0
 
@@ -75,7 +74,7 @@ TOGETHER = 64
 """Number of frames that are sampled at a time."""
 
 
-def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict[str, Any] | None:
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
     """Return a motion as a message for the view, with a limited number of numbers."""
     if clip is None or not len(times := clip.times):
         return None
@@ -89,7 +88,7 @@ def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict
     return {"times": times, "matrices": matrices.ravel()}
 
 
-def gizmo_part(state: State) -> dict[str, Any] | None:
+def gizmo_part(state: State) -> Rings | None:
     """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
     if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
         return None

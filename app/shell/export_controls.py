@@ -13,6 +13,7 @@ from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.runtime.display import count
 
+from ..document.document import applied
 from ..document.session import Session
 from ..document.state import State
 from ..editing.compute.stack import vertices_of
@@ -29,7 +30,7 @@ LATE = ("rig", "binding", "repair", "edits")
 
 
 def changes_of(state: State) -> str:
-    """Return what of the weights that are exported differs from the file, in a line."""
+    """Summarise in a line how the exported weights differ from the file's."""
     if state.binding is None:
         return ""
     counts = changed_rows(state)
@@ -47,7 +48,9 @@ def changed_rows(state: State) -> dict[str, int] | None:
     None where the file has no weights.
     """
     rig, binding = state.rig, state.binding
-    file_weights = rig.weights if state.repair is None else state.repair.before.weights
+    file_weights = rig.weights
+    if state.repair is not None and state.repair.codes:
+        file_weights = applied(state.own, None, state.edits).weights
     if file_weights is None or file_weights.shape != binding.weights.shape:
         return None
     differs = _rows_differ(binding.weights, file_weights)
@@ -81,20 +84,19 @@ def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
 
 
 def page(state: State) -> Callable[..., str]:
-    """Return what makes the interactive page of a state, which begins with what is seen."""
+    """Return a function that makes the interactive page, which opens on the current panel."""
     view = state.panel if state.panel in VIEWS else "weights"
-    return partial(interactive_page, view=view)
+    return partial(interactive_page, view=view, colormap=state.colormap)
 
 
 def _described(state: State) -> str:
-    """Return what the exported file contains."""
+    """Describe the content of the exported file."""
     rig, edits = state.rig, state.edits
     if rig is None or keeps_document(rig):
         moved = any(one.position is not None for one in edits.joints.values())
         changed = ["weights"]
         changed += ["skeleton"] if moved or edits.structural else []
-        repair = state.repair
-        changed += ["mesh"] if repair and repair.before.mesh is not repair.after.mesh else []
+        changed += ["mesh"] if rig.mesh is not state.own.mesh else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
@@ -104,7 +106,7 @@ def _described(state: State) -> str:
 
 
 def _offering(act: Callable[..., None], *arguments: Any) -> Callable[[Session], None]:
-    """Return what starts an export that offers its file to the browser."""
+    """Return a function that starts an export and offers its file to the browser."""
     return lambda session: act(session, *arguments, session.view.offer)
 
 

@@ -7,7 +7,6 @@ import param
 
 from cutcell.diagnosis import TITLES, Finding
 from cutcell.editing import Edits
-from cutcell.rig import Rig
 
 from ...document.state import Panel
 from ...editing.compute.stack import part_layers
@@ -32,28 +31,6 @@ class WarningLink:
         return f"Show: {TITLES[self.code.removeprefix(EXPORT)].lower()}" if self.code else ""
 
 
-@dataclass(frozen=True, eq=False)
-class Repair:
-    """Repairs of the current character.
-
-    Parameters
-    ----------
-    before, after : Rig
-    counts : dict of str to int
-        How many findings of each severity there were before.
-    done : tuple of str
-        What was done, in sentences.
-    in_vain : frozenset of str
-        Codes of findings whose last repair did not help.
-    """
-
-    before: Rig
-    after: Rig
-    counts: dict[str, int]
-    done: tuple[str, ...]
-    in_vain: frozenset[str] = frozenset()
-
-
 PANEL = Panel(
     "Check", '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>', works_without_skeleton=True
 )
@@ -71,7 +48,7 @@ class Choices(param.Parameterized):
         binding: Any
         edits: Edits
         graph: Any
-        rig: Rig
+        rig: Any
 
     diagnosis: Any = param.Parameter(None, doc="The cutcell.Diagnosis, or None so far.")
     export_diagnosis: Any = param.Parameter(
@@ -81,7 +58,7 @@ class Choices(param.Parameterized):
         "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
     )
     tried: Any = param.Parameter(None, doc="Weights that are previewed, shape (n, j), or None.")
-    repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
+    repair: Any = param.Parameter(None, doc="The `Repair` of this character, or None.")
 
     @property
     def open_findings(self) -> list[Any]:

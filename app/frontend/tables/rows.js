@@ -1,0 +1,19 @@
+// A short list of things that can be chosen, each with a number and a bar.
+
+import {button, drawn, h} from "../common/nodes.js"
+import {stylesheet} from "../common/styles.js"
+
+const styled = await stylesheet("tables/rows.css")
+
+/** @param {{model: Model}} widget */
+export function render({model}) {
+  const point = (row) => () => model.points && model.send_msg({type: "point-at-row", row})
+  const item = ([name, note, part], row) => h("li", {}, button({
+    "aria-current": String(row === model.chosen),
+    "onclick": () => model.send_msg({type: "pick-row", row}),
+    "onmouseenter": point(row), "onfocus": point(row),
+    "onmouseleave": point(-1), "onblur": point(-1),
+  }, h("span", {title: name}, name), h("b", {}, note), h("i", {style: {width: `${100 * part}%`}})))
+  return drawn(model, ["rows", "chosen"], styled, () =>
+    h("ol", {"aria-label": model.label}, model.rows.map(item)))
+}
