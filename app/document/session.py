@@ -17,9 +17,9 @@ from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
-from ..messages.received import Message
-from ..messages.sent import ToBrowser
 from ..server.messages import error_text
+from ..server.protocol.received import Message
+from ..server.protocol.sent import ToBrowser
 from .document import Document, History
 from .state import State
 

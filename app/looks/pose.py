@@ -9,7 +9,7 @@ from cutcell_viewers.pose_scene import joint_turns, swing
 
 from ..document.session import Session
 from ..document.state import State
-from ..messages.sent import Motion, Rings
+from ..server.protocol.sent import Motion, Rings
 
 SWING_DEGREES = 50.0
 

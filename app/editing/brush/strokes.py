@@ -13,8 +13,8 @@ from ...document.selection import Selection, selected
 from ...document.session import Session
 from ...document.state import State
 from ...looks.weights import painted_colors
-from ...messages import sent
-from ...messages.received import Paint
+from ...server.protocol import sent
+from ...server.protocol.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene

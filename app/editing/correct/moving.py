@@ -14,8 +14,8 @@ from cutcell_viewers.character import to_scene
 from ...document.document import applied
 from ...document.session import Session
 from ...document.state import State
-from ...messages.received import MoveJoint
-from ...messages.sent import Knob
+from ...server.protocol.received import MoveJoint
+from ...server.protocol.sent import Knob
 from ..compute import cross_section_centre, joint_mirror
 from .commands import check_alone, correct
 

@@ -13,8 +13,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.histogram import in_bars
 from ...looks.selection import neighbours_of
-from ...messages.received import Lasso, PickStrongest
-from ...messages.sent import Through
+from ...server.protocol.received import Lasso, PickStrongest
+from ...server.protocol.sent import Through
 from ..brush.strokes import clear_selection, invert_selection, select
 from ..compute.condition import vertices_where
 

@@ -11,7 +11,7 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected
 from ...document.session import Session
-from ...messages.received import EditWeight, Message, Page, PickVertex, Sort
+from ...server.protocol.received import EditWeight, Message, Page, PickVertex, Sort
 from .operations import edit
 
 ROWS = 20

@@ -9,7 +9,7 @@ from cutcell_viewers.palette import BONE_IDLE, GHOST, INTERIOR, MARK, SOURCE, co
 
 from ...document.framing import theme_of
 from ...document.session import Session
-from ...messages.received import Answer, Message
+from ...server.protocol.received import Answer, Message
 from ...widgets.modules import Widget, script
 from ...widgets.table import Control, draw
 

@@ -9,7 +9,7 @@ from ...document.address import from_query
 from ...document.look import pick, pick_node, pick_vertex
 from ...document.session import Session
 from ...editing.correct.commands import overrule
-from ...messages.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
+from ...server.protocol.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .facts import node_facts, vertex_facts

@@ -6,7 +6,7 @@ from typing import Any
 import param
 
 from ...document.session import Session
-from ...messages.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
+from ...server.protocol.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .lesson import Lesson

@@ -11,8 +11,8 @@ from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
 from ...looks.pose import angles_of, clip_of, clip_part, rotation_of
-from ...messages.received import Play, Turn
-from ...messages.sent import Motion
+from ...server.protocol.received import Play, Turn
+from ...server.protocol.sent import Motion
 from .errors import motion_error, scene_error
 from .materials import MATERIALS
 from .scene import has_rival

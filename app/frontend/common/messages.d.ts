@@ -1,4 +1,4 @@
-// Written by app/messages/typescript.py.
+// Written by app/server/protocol/typescript.py.
 type Vector = number[]
 type Announced = {name: string; size: number}  // A file that follows.
 type Camera = {position: Vector; focal_point: Vector}  // Where one looks from, and at what.

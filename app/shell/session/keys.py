@@ -17,7 +17,7 @@ from ...editing.select import actions as selecting
 from ...features.learn.writing import save_view
 from ...features.pairs import results as pairs
 from ...looks.pose import play
-from ...messages.received import Act
+from ...server.protocol.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
