@@ -1,9 +1,8 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
-from typing import Any
-
 from cutcell_viewers.camera import Camera, framing
 
+from ..messages.received import Pick, PickNode, PickVertex
 from .framing import bounds_of, camera_part
 from .session import Session
 
@@ -11,9 +10,9 @@ from .session import Session
 def watch(session: Session) -> None:
     """Connect the state to picks in the view."""
     view = session.view
-    view.listen("pick", lambda message: pick(session, int(message["joint"])))
-    view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
-    view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
+    view.listen(Pick, lambda message: pick(session, message.joint))
+    view.listen(PickVertex, lambda message: pick_vertex(session, message.vertex, message.view))
+    view.listen(PickNode, lambda message: pick_node(session, message.node))
     session.engine.when(lambda state: state.shown_graph, lambda graph: pick_node(session, None))
 
 
@@ -45,13 +44,9 @@ def pick_vertex(session: Session, vertex: int | None, view: int = 0) -> None:
     state.param.update(vertex=vertex, node=None, clicked_method=method)
 
 
-def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
-    pick_vertex(session, int(message["vertex"]), int(message.get("view", 0)))
-
-
 def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
     view, home = session.view, framing(bounds_of(session.state), 1.2)
     view.camera, view.at_home = camera or home, camera is None
-    now = {} if camera is None else {"now": camera_part(camera)}
-    view.send(camera={**camera_part(home), **now})
+    now = None if camera is None else camera_part(camera)
+    view.send(camera={**camera_part(home), "now": now})

@@ -7,7 +7,7 @@ from urllib.parse import urlsplit
 from cutcell.errors import ParameterError
 from cutcell_viewers.camera import Camera
 
-from ..document.address import from_query, numbers_of, simple, with_scene
+from ..document.address import camera_of, from_query, numbers_of, simple, with_scene
 from ..document.method import GRAPH, WEIGHTS, effective
 from ..features.state import PageState
 
@@ -61,7 +61,7 @@ def read_address(text: str) -> Address:
     state = PageState()
     query = with_scene(urlsplit(text).query if "?" in text else text, state)
     page, arrival, problems = from_query(query, state)
-    problems += ["edits"] * ("edits" in arrival)
+    problems += [name for name in ("edits", "repairs") if name in arrival]
     if problems:
         raise ParameterError(f"the address has entries that cannot be drawn: {', '.join(problems)}")
     options = {name: page.pop(name) for name in (*GRAPH, *WEIGHTS) if name in page}
@@ -84,8 +84,3 @@ def read_camera(text: str) -> Camera:
         raise ParameterError(
             f'camera must be six numbers, such as 0,1,4,0,1,0, not "{text}"'
         ) from None
-
-
-def camera_of(numbers: list[float]) -> Camera:
-    """Return the camera of six numbers: the position of the eye, and its target."""
-    return Camera(tuple(numbers[:3]), tuple(numbers[3:]))  # type: ignore[arg-type]

@@ -18,6 +18,7 @@ from cutcell_app.features.compare.lab.controls import FIELDS, SWEEP, about, plot
 from cutcell_app.features.compare.lab.curves import plot
 from cutcell_app.features.compare.lab.rows import Setting, in_units, number, settings_of
 from cutcell_app.looks.measures import CONVERGED, RESOLUTIONS
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.curves import Curves
 from cutcell_lab.baselines.measured_distance import error_points
@@ -111,7 +112,7 @@ def test_a_point_becomes_the_choice_of_the_page_and_is_undone(bound, loop):
     assert bound.state.binding.method.resolution == 12
     assert bound.state.swept == before, "the sweep does not depend on the value that is chosen"
     assert [row["chosen"] for row in table(bound.state)["rows"]] == [False, True]
-    loading.revisit(bound, bound.history.undo())
+    keys.act(bound, "undo")
     assert bound.state.resolution == 16
     lab.choose(bound, {"max_influences": None})
     assert "does not offer max_influences=None" in bound.state.message[1]
@@ -174,9 +175,9 @@ def test_curves_have_a_point_for_each_value(bound, loop):
     assert [p["text"] for p in by_height] == [number(x) for x in sorted(p.l1 for p in measured)]
     widget = draw(bound, SWEEP).select(Curves)[0]
     assert widget.plots == [plot]
-    widget._handle_msg({"type": "point", "id": "26"})
+    widget._handle_msg({"type": "pick-point", "id": "26"})
     assert bound.state.connectivity == 26
-    widget._handle_msg({"type": "point", "id": "27"})
+    widget._handle_msg({"type": "pick-point", "id": "27"})
     assert bound.state.connectivity == 26
 
 
@@ -238,8 +239,8 @@ def test_a_setting_is_seen_over_the_computed_base(bound, loop):
     state.message = None
     lab.choose(bound, {"max_influences": 2})
     assert state.message is None
-    loading.revisit(bound, bound.history.undo())
-    loading.revisit(bound, bound.history.undo())
+    keys.act(bound, "undo")
+    keys.act(bound, "undo")
     assert (state.edits.base, state.max_influences) == ("file", 4)
 
 

@@ -1,20 +1,21 @@
 """Move joints: by the handle in the view, by numbers, to the middle of the limb."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.edited import edited_rig
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import CutcellError, SkeletonError
 from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 
+from ...document.document import applied
 from ...document.session import Session
 from ...document.state import State
+from ...messages.received import MoveJoint
+from ...messages.sent import Knob
 from ..compute import cross_section_centre, joint_mirror
 from .commands import check_alone, correct
 
@@ -26,18 +27,18 @@ def watch(session: Session) -> None:
     """Connect the handle to the chosen joint, and joints to the handle."""
     follow = session.state.param.watch
     hand = Hand(session)
-    session.view.listen("joint", hand.move)
+    session.view.listen(MoveJoint, hand.move)
     follow(lambda *events: hand.release(), ["rig", "binding", "panel"])
 
 
-def handle_part(state: State) -> dict[str, Any] | None:
+def handle_part(state: State) -> Knob | None:
     """Return the move handle of the chosen joint, with its mirror plane, or None."""
     if state.rig is None or not state.joint_handle or state.panel != "weights":
         return None
     if state.binding is None:
         return None
     at = to_scene(state.rig, state.rig.skeleton.joints[[state.joint]])[0]
-    part = {"joint": state.joint, "at": at.tolist(), "mirror": None}
+    part: Knob = {"joint": state.joint, "at": at.tolist(), "mirror": None}
     mirror, partner = mirror_of(state), moves_along(state)
     if mirror is not None and partner is not None:
         part["mirror"] = plane_in_scene(state.rig.world, mirror)
@@ -131,7 +132,7 @@ def moved(session: Session, place: ArrayLike) -> Edits:
         position = tuple(round(x, digits) for x in at.tolist())
         edited[name] = replace(before, position=None if same and not before.added else position)
     edits = replace(state.edits, joints=edited)
-    edited_rig(state.own, edits)
+    applied(state.own, state.repair, edits)
     return edits
 
 
@@ -153,25 +154,22 @@ class Hand:
         self._session = session
         self._holds = False
 
-    def move(self, message: dict[str, Any]) -> None:
-        """Show the character with the chosen joint somewhere; take it when it is let go.
-
-        The message has the number of the "joint", its "position" in the scene, and "done".
-        """
+    def move(self, message: MoveJoint) -> None:
+        """Show the character with the chosen joint moved; take its position when it is done."""
         session, state = self._session, self._session.state
-        if state.binding is None or int(message["joint"]) != state.joint:
+        if state.binding is None or message.joint != state.joint:
             return
         back = np.linalg.inv(state.rig.world)
-        place = back[:3, :3] @ np.asarray(message["position"], float) + back[:3, 3]
+        place = back[:3, :3] @ np.asarray(message.position) + back[:3, 3]
         try:
             edits = moved(session, place)
-            rig = edited_rig(state.own, edits)
+            rig = applied(state.own, state.repair, edits)
         except CutcellError as error:
             self.release()
             session.fail(error)
             session.view.send(mover=session.view.last_sent("mover"))  # where it was before
             return
-        if not message.get("done"):
+        if not message.done:
             if session.engine.is_fresh("bound"):  # else the last position is about to be bound
                 state.moved = rig, edits  # the bones follow at once
             return

@@ -5,15 +5,17 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from param.parameterized import batch_call_watchers
 
 from cutcell.editing import Computed, Edits, JointEdit, Locked
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
 
+from ...document.document import put
 from ...document.session import Session
 from ..compute.stack import changed
-from .commands import check_alone, correct, edited_state
+from .commands import check_alone, correct
 from .moving import mirror_of, moves_along, rounded
 
 BEYOND = 0.5
@@ -137,10 +139,9 @@ def _change(session: Session, change: Callable[[Rig, Edits, str], tuple[Edits, s
             check_alone(state.rig.skeleton, joint)
             edits, leads_to = change(state.rig, edits, names[joint])
             chosen.append(leads_to)
-        values = edited_state(session.state, edits)
+        with batch_call_watchers(state):  # at once: it is one step to undo
+            put(state, edits=edits)
+            names = state.rig.skeleton.names
+            state.joint = names.index(chosen[0]) if chosen[0] in names else 0
     except CutcellError as error:
         session.fail(error)
-        return
-    names = values["rig"].skeleton.names
-    values["joint"] = names.index(chosen[0]) if chosen[0] in names else 0
-    state.param.update(**values)  # at once: it is one step to undo

@@ -264,7 +264,7 @@ def _repairs(state: Any) -> list[Any]:
     if state.repair is None:
         return rows
     done = [_line(text) for text in state.repair.done]
-    if state.repair.before is state.rig:
+    if not state.repair.codes:
         return rows + done
     now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [

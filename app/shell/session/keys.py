@@ -5,26 +5,27 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from param.parameterized import batch_call_watchers
 
-from cutcell.editing import edited_rig
 from cutcell_viewers.camera import FRONT
 
 from ...document.address import defaults
-from ...document.edits import changed_only, changes
+from ...document.document import put
 from ...document.framing import camera_on_bone, first_joint
-from ...document.loading import revisit
+from ...document.loading import travel
 from ...document.look import set_camera
 from ...document.session import Session
 from ...features import FEATURES
 from ...features.pairs import results as pairs
+from ...messages.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
 
 
 def watch(session: Session) -> None:
-    """Obey the keys."""
-    session.view.listen("act", lambda message: act(session, str(message.get("act"))))
+    """Connect the keys."""
+    session.view.listen(Act, lambda message: act(session, message.act))
 
 
 def act(session: Session, name: str) -> None:
@@ -38,9 +39,9 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = edited_rig(state.own, state.first_edits)
-    changed = {**changes(state, rig, state.first_edits), **changed_only(state, first)}
-    state.param.update(**{**changed, "joint": first_joint(rig)})
+    with batch_call_watchers(state):
+        put(state, **first)
+        state.joint = first_joint(state.rig)
     session.view.send(home=True)
 
 
@@ -89,24 +90,14 @@ def to_child(session: Session) -> None:
         state.joint = int(below[0])
 
 
-def undo(session: Session) -> None:
-    """Go back by one entry of the history."""
-    revisit(session, session.history.undo())
-
-
-def redo(session: Session) -> None:
-    """Go forward by one entry of the history."""
-    revisit(session, session.history.redo())
-
-
 def toggle_rendered(session: Session) -> None:
     """Let the server draw the view, or the browser again."""
     session.state.rendered = not session.state.rendered
 
 
 KEYS: dict[str, Callable[[Session], Any]] = {
-    "undo": undo,
-    "redo": redo,
+    "undo": partial(travel, by=-1),
+    "redo": partial(travel, by=1),
     "reset": reset,
     "rendered": toggle_rendered,
     "play": play,
@@ -116,6 +107,6 @@ KEYS: dict[str, Callable[[Session], Any]] = {
     "parent": to_parent,
     "child": to_child,
 }
-"""By their names in `frontend/keys.js`."""
+"""By their names in `frontend/page/keys.js`."""
 for feature in FEATURES.values():
     KEYS |= feature.keys

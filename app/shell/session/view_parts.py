@@ -16,15 +16,16 @@ from ...document.session import Session
 from ...document.state import State
 from ...features import FEATURES
 from ...features.scenes import resolve
+from ...messages.received import MovePoint
 
 SCENE = "scene"
 HANDLES = {name: one for feature in FEATURES.values() for name, one in feature.handles.items()}
 
 
-def _points(state: State) -> dict[str, list[float]]:
-    """Return the handles that are points, by their names."""
+def _points(state: State) -> dict[str, list[float]] | None:
+    """Return the points that can be dragged, by their names; None for none."""
     places = {name: one.at(state) for name, one in HANDLES.items()}
-    return {n: [float(x) for x in at] for n, at in places.items() if at is not None}
+    return {n: [float(x) for x in at] for n, at in places.items() if at is not None} or None
 
 
 PARTS: dict[str, Callable[[State], Any]] = {
@@ -41,11 +42,11 @@ for one in FEATURES.values():
 def watch(session: Session) -> None:
     """Show the state from now on, and move what is dragged."""
 
-    def move(message: dict[str, Any]) -> None:
-        handle = HANDLES[str(message["name"])]
-        handle.move(session, [float(x) for x in message["position"]], bool(message["done"]))
+    def move(message: MovePoint) -> None:
+        if message.name in HANDLES:
+            HANDLES[message.name].move(session, message.position, message.done)
 
-    session.view.listen("point", move)
+    session.view.listen(MovePoint, move)
     Shown(session).update()
 
 

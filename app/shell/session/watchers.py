@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from ...document import arrival, look, recording
+from ...document import loading, look, recording
 from ...document.session import Session
 from ...features import FEATURES, results
 from . import export_queue, idle, keys, rendered, view_parts
 
 WATCHING: tuple[Any, ...] = (
-    arrival, export_queue, idle, keys, look, recording, rendered, view_parts, *FEATURES.values(),
+    export_queue, idle, keys, loading, look, recording, rendered, view_parts, *FEATURES.values(),
 )  # fmt: skip
 """In any order: results come first, and views of the state last; see `Engine.follow`."""
 
