@@ -17,16 +17,24 @@ PANEL = """
 from cutcell_app.shell.session.begin import begin
 from cutcell_app.features import FEATURES
 from cutcell_app.widgets.controls import draw
-from cutcell_app.features.scenes import resolve
+from cutcell_app.headless.choices import Choices
+from cutcell_app.headless.scene import describe
 from tests.viewers.arm import arm_rig
 from tests.app.loop import Loop
 loop = Loop()
 session = begin(loop)
 session.state.param.update(panel="size", rig=arm_rig())
 assert draw(session, FEATURES["size"].controls, "size").objects[1].value is True
-loop.run_until(lambda: session.state.size is not None)
+loop.rest(session)
 assert session.state.size > 0
-assert "body" in resolve(session.state).actors
+title = session.view._next.legend.title
+assert title.startswith("Size")
+assert session.view.last_sent("points") == {"size limit": [0, 1, 0]}
+session.view._handle_msg({"type": "move-point", "name": "size limit", "position": [0, 0.3, 0]})
+assert session.state.size_limit == 0.3
+assert session.view.last_sent("points") == {"size limit": [0, 0.3, 0]}
+drawn = describe(arm_rig(), Choices("size"), resolution=8)
+assert "body" in drawn.actors and drawn.legend.title == title
 """
 OPTION = """
 from typer.testing import CliRunner
@@ -107,7 +115,7 @@ def follow(lines: list[str], path: Path) -> None:
 @pytest.mark.parametrize(
     ("recipe", "most", "check"),
     [
-        ("Adding a panel", 6, PANEL),
+        ("Adding a panel", 7, PANEL),
         ("Adding an option of the method", 3, OPTION),
         ("Adding a metric", 1, METRIC),
         ("Adding a file format", 2, FORMAT),
