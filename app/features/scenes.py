@@ -1,6 +1,5 @@
 """Scenes of the state: pure functions, one for each panel."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -10,13 +9,8 @@ from cutcell_viewers.skin import Skin
 
 from ..derive.memo import Memo
 from ..document.state import State
-from . import modules
+from . import FEATURES
 from .state import PANELS
-
-SCENES: dict[str, Callable[[State, Memo], Description]] = {
-    panel: module.scene for panel, module in modules("scene").items()
-}
-"""The scene of each panel, for a state with a rig."""
 
 RIGID = "parts fixed to one bone"
 """Legend of the grey parts of a coloured body."""
@@ -27,7 +21,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     if state.rig is None:
         return Description()
     panel = state.panel if state.is_panel_usable else "graph"
-    whole = SCENES[panel](state, memo or Memo())
+    whole = FEATURES[panel].scene(state, memo or Memo())
     blending: Any = state.blending if PANELS[panel].poses else "linear"
     whole = with_colormap(whole, state.colormap)
     whole = replace(whole, actors={**whole.actors, **state.actors}, blending=blending)

@@ -20,7 +20,7 @@ from ..derive.jobs import Gate, on_its_thread
 from ..document import loading
 from ..document.opening import Request
 from ..document.session import Session
-from ..features import modules
+from ..features import FEATURES
 from ..features.learn.lesson import Lesson
 from ..features.learn.overlay import LessonNotes, steps_of
 from ..features.learn.welcome import Welcome
@@ -125,7 +125,7 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
     canvas = pmui.Column(
         view,
         messages(session),
-        *(module.overlay(session) for module in modules("overlay").values()),
+        *(one.overlay(session) for one in FEATURES.values() if one.overlay is not None),
         sizing_mode="stretch_both",
         margin=0,
         styles={"position": "relative"},

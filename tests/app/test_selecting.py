@@ -41,7 +41,7 @@ def hear(session, kind, **message):
     session.view._handle_msg({"type": kind, **message})
 
 
-def test_a_lasso_selects_adds_and_subtracts(bound):
+def test_a_lasso_selects_adds_and_subtracts(bound, loop):
     state = bound.state
     keys.act(bound, "lasso")
     assert state.lasso
@@ -61,6 +61,7 @@ def test_a_lasso_selects_adds_and_subtracts(bound):
     state.lasso = True
     assert not state.brush
     state.panel = "graph"
+    loop.rest(bound)
     assert bound.view.last_sent("lasso") is None
     hear(bound, "lasso", vertices=[2], mode="replace")
     assert selected(state) is None

@@ -16,6 +16,7 @@ from cutcell_app.document import loading, look
 from cutcell_app.editing.binding import recovery as binding
 from cutcell_app.editing.binding import results
 from cutcell_app.features import scenes
+from cutcell_app.features.state import PANELS
 from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.begin import begin
 from cutcell_app.shell.status import stage_text, summary, warning
@@ -437,7 +438,7 @@ def test_meshes_of_the_server_are_shown_with_every_character(bound):
     points, cells = np.zeros((1, 3), np.float32), np.zeros((1, 1), np.int32)
     sensor = Actor("points", points, cells)
     bound.state.actors = {"sensor": sensor}
-    for panel in scenes.SCENES:
+    for panel in PANELS:
         if panel != "pairs":
             bound.state.panel = panel
             assert scenes.resolve(bound.state, bound.memo).actors["sensor"] is sensor

@@ -33,11 +33,11 @@ def watch(session: Session) -> None:
     follow = session.state.param.watch
     controller = BrushController(session)
     session.view.listen(Paint, controller.paint)
-    follow(lambda *events: take_up(session), "brush")
-    follow(lambda event: put_down(session) if event.new else None, "joint_handle")
+    follow(lambda *events: activate(session), "brush")
+    follow(lambda event: deactivate(session) if event.new else None, "joint_handle")
 
 
-def take_up(session: Session) -> None:
+def activate(session: Session) -> None:
     """Show the weights that are about to be painted, and nothing else that can be dragged."""
     state = session.state
     if not state.brush:
@@ -59,12 +59,12 @@ def _surface(session: Session, mesh: TriangleMesh) -> PaintSurface:
     return surface
 
 
-def put_down(session: Session) -> None:
+def deactivate(session: Session) -> None:
     """Paint no more."""
     session.state.brush = False
 
 
-def turn_over(session: Session) -> None:
+def toggle(session: Session) -> None:
     """Switch the brush on where weights can be painted, else off."""
     state = session.state
     if not state.open_panel.paints:
