@@ -1,18 +1,17 @@
 """The choice of a cutting plane, and what moves and turns it."""
 
-from typing import Any
-
+from ..document.state import State
 from ..widgets import controls as ui
 from .cut import face_the_eye
 
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 
 
-def _free(state: Any) -> bool:
+def _free(state: State) -> bool:
     return bool(state.cut_axis == "free")
 
 
-def _cut(state: Any) -> bool:
+def _cut(state: State) -> bool:
     return bool(state.cut_across != "off")
 
 
