@@ -6,6 +6,8 @@ from typing import Any
 
 import param
 
+from cutcell_viewers.palette import COLORMAPS
+
 MOMENT = -1.0
 """`precedence` of parameters that belong to one person or moment: undo leaves them, and the address
 has no entry with their names; it may have entries of its own for them."""
@@ -48,6 +50,12 @@ class Common(param.Parameterized):
         default="open",
         objects={"Open": "open", "Distance": "field", "Winding": "winding"},
         doc="The same, of the graph.",
+    )
+    colormap: param.Selector[str] = param.Selector(
+        default="default",
+        objects={name.capitalize(): name for name in COLORMAPS},
+        label="Colour map",
+        doc="Of distances, depths and the weights of one bone: one of `palette.COLORMAPS`.",
     )
 
     actors = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")

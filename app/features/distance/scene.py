@@ -33,7 +33,7 @@ def scene(state: State) -> Description:
     path = path_of(state)
     inside = (path is not None and len(path) > 0) or state.starts
     see = BODY_OPACITY_WITH_PATH if inside and cut is None else 1.0
-    actors = character(state, **colors, film=state.wave, opacity=see)
+    actors = character(state, **colors, follows_wavefront=state.wave, opacity=see)
     swatches = legend.swatches
     if cut is not None and state.cut_face == "winding":
         face, legend = winding_section(state, cut)
@@ -41,7 +41,9 @@ def scene(state: State) -> Description:
         swatches = legend.swatches
     elif cut is not None:
         face = field_section(state, cut, state.field, limits)
-        actors |= {name: replace(actor, film=state.wave) for name, actor in face.items()}
+        actors |= {
+            name: replace(actor, follows_wavefront=state.wave) for name, actor in face.items()
+        }
     if state.starts and has_field(state):
         parts, swatch = _starts(state)
         actors |= parts

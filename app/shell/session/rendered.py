@@ -1,10 +1,12 @@
 """Rendered: the canvas as PyVista draws it on the server, once the view rests."""
 
+from dataclasses import replace
 from typing import Any
 
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
-from cutcell_viewers.process import DrawingProcess, Frame
+from cutcell_viewers.order import Order
+from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ...document.session import Session
@@ -29,7 +31,7 @@ def draw(session: Session, message: DrawFrame) -> None:
 
     def work(progress: Any) -> bytes | CutcellError:
         try:
-            return PROCESS.draw(Frame(scene.posed(), **options))
+            return PROCESS.draw(Order(replace(scene.posed(), views=()), **options))
         except CutcellError as error:
             return error
 
@@ -55,7 +57,7 @@ def _frame_options(message: DrawFrame) -> dict[str, Any]:
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
-        "pixel_ratio": ratio,
+        "page_height": size[1] / ratio,
         "fine": message.fine,
     }
 

@@ -94,8 +94,10 @@ def test_waves_are_in_step(state):
     state.param.update(wave=True, front=0.5)
     scene = resolve(state)
     assert scene.front == 0.5 * farthest(state)
-    films = [scene.actors[name].film for name in ("body", "body 1", "body 2", "voxels")]
-    assert all(films)
+    following = [
+        scene.actors[name].follows_wavefront for name in ("body", "body 1", "body 2", "voxels")
+    ]
+    assert all(following)
     assert (BODY, "not reached yet") in scene.legend.swatches
 
 
