@@ -120,8 +120,11 @@ def weights_shown(state: State) -> str:
     return state.weights_shown
 
 
-def coloring(state: State, colors: str, weights: NDArray) -> tuple[dict[str, Any], Legend]:
-    """Return the fields of the body's `Actor` that colour it, and the legend."""
+def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any], Legend]:
+    """Return the fields of the body's `Actor` that colour it, and the legend.
+
+    `state` needs no more than the choices of these colours, and may be of a few vertices.
+    """
     rig = state.rig
     if colors == "difference":
         return difference_colors(rig, state.weights, rig.weights)

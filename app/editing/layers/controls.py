@@ -33,7 +33,8 @@ def _rows(state: State) -> dict[str, Any]:
     """Return the rows of the list, the topmost layer first, and the chosen one."""
     layers = state.edits.layers
     rows = [(one.title, _extent(one), one.opacity * one.on) for one in reversed(layers)]
-    chosen = -1 if _layer(state) is None else len(layers) - 1 - state.layer
+    place = state.layer
+    chosen = -1 if place is None or _layer(state) is None else len(layers) - 1 - place
     return {"rows": rows, "chosen": chosen}
 
 
@@ -87,7 +88,9 @@ def _reads(name: str, default: Any) -> Any:
 def _moves(by: int) -> Any:
     def can(state: State) -> bool:
         place = state.layer
-        return _layer(state) is None or not 0 <= place + by < len(state.edits.layers)
+        if place is None or _layer(state) is None:
+            return True
+        return not 0 <= place + by < len(state.edits.layers)
 
     def act(session: Session) -> None:
         commands.change(session, lambda edits, place: stack.moved(edits, place, by))
