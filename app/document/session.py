@@ -12,7 +12,6 @@ from cutcell_viewers.description import Description
 
 from ..derive.engine import Engine
 from ..derive.jobs import Schedule
-from ..derive.memo import Memo
 from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
@@ -152,11 +151,6 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
-
-    @property
-    def memo(self) -> Memo:
-        """Costly steps of what is shown of the state."""
-        return self.state.memo
 
     @property
     def folder(self) -> Path:

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Any
 from cutcell_viewers.description import Description
 
 from ..derive.derived import Derived
-from ..derive.memo import Memo
 from ..document.state import Panel, State
 
 if TYPE_CHECKING:
@@ -112,9 +111,9 @@ class Feature:
         return tuple(self._declared("results", "RESULTS", ()))
 
     @cached_property
-    def scene(self) -> Callable[[State, Memo], Description]:
+    def scene(self) -> Callable[[State], Description]:
         """The scene of its panel, of a state with a character; `scene.scene`."""
-        scene: Callable[[State, Memo], Description] = self._declared("scene", "scene")
+        scene: Callable[[State], Description] = self._declared("scene", "scene")
         return scene
 
     @cached_property

@@ -1,7 +1,6 @@
 """Controls of several panels: the cutting plane, and rest after a pose."""
 
-from typing import Any
-
+from ..document.state import State
 from ..widgets import controls as ui
 from .cut import face_the_eye
 from .pose import rest
@@ -9,11 +8,11 @@ from .pose import rest
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 
 
-def _free(state: Any) -> bool:
+def _free(state: State) -> bool:
     return bool(state.cut_axis == "free")
 
 
-def _cut(state: Any) -> bool:
+def _cut(state: State) -> bool:
     return bool(state.cut_across != "off")
 
 

@@ -50,7 +50,7 @@ def _open(session: Session, chosen: str) -> None:
         load_again(session, chosen)
 
 
-def about(state: Any) -> str:
+def about(state: State) -> str:
     """Return what a demo shows, or a file's name, and what is wrong with the character.
 
     Empty while a step of the lesson asks: the text would give the answer away.

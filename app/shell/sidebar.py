@@ -5,6 +5,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..document.session import Session
+from ..document.state import State
 from ..editing.correct.template_controls import SKELETON
 from ..features import FEATURES
 from ..features.state import PANELS
@@ -20,7 +21,7 @@ NO_SKELETON = (
 )
 
 
-def _is_alone(state: Any) -> bool:
+def _is_alone(state: State) -> bool:
     """Return whether one character is shown, and not two that are compared."""
     return state.panel != "pairs" or state.opened is None
 

@@ -94,7 +94,7 @@ def summary(state: State) -> str:
     return "  |  ".join(parts)
 
 
-def _is_busy(state: Any) -> bool:
+def _is_busy(state: State) -> bool:
     return bool(state.busy)
 
 

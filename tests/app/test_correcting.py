@@ -411,11 +411,11 @@ def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
     assert np.array_equal(bound.state.binding.weights[together], [[0.25, 0, 0.75]] * len(together))
     look.pick_vertex(bound, 7)
     bound.state.explain = True
-    facts = vertex_facts(bound.state, bound.memo)
+    facts = vertex_facts(bound.state)
     assert facts["overruled"]
     assert [bone["weight"] for bone in facts["offered"]][:3] == [0.75, 0.25, 0]
     settled(bound, loop)
-    reports = vertex_facts(bound.state, bound.memo)["why"]
+    reports = vertex_facts(bound.state)["why"]
     assert reports[0]["steps"][-1] == ["Painted", 0.75]
     correct.overrule(bound, 7, {0: 0.0})
     assert "needs a weight above 0" in bound.state.message[1]

@@ -327,10 +327,10 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
     threads, described = [], []
     resolve = scenes.resolve
 
-    def noted(state, memo):
+    def noted(state):
         if state.rig is not None:
             threads.append(threading.current_thread())
-        return resolve(state, memo)
+        return resolve(state)
 
     monkeypatch.setattr("cutcell_app.shell.session.view_parts.resolve", noted)
     monkeypatch.setattr(session.view, "present", lambda scene, **parts: described.append(scene))
@@ -441,4 +441,4 @@ def test_meshes_of_the_server_are_shown_with_every_character(bound):
     for panel in PANELS:
         if panel != "pairs":
             bound.state.panel = panel
-            assert scenes.resolve(bound.state, bound.memo).actors["sensor"] is sensor
+            assert scenes.resolve(bound.state).actors["sensor"] is sensor

@@ -55,7 +55,7 @@ def activate(session: Session) -> None:
 
 
 def _surface(session: Session, mesh: TriangleMesh) -> PaintSurface:
-    surface: PaintSurface = session.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
+    surface: PaintSurface = session.state.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
     return surface
 
 

@@ -95,14 +95,14 @@ def grow(session: Session) -> None:
     """Add the neighbours of selected vertices."""
     chosen = selected(session.state)
     if chosen is not None:
-        select(session, neighbours_of(session.state, session.memo).grown(chosen))
+        select(session, neighbours_of(session.state).grown(chosen))
 
 
 def shrink(session: Session) -> None:
     """Remove the rim of the selection."""
     chosen = selected(session.state)
     if chosen is not None:
-        select(session, neighbours_of(session.state, session.memo).shrunk(chosen))
+        select(session, neighbours_of(session.state).shrunk(chosen))
 
 
 def select_joint(session: Session) -> None:
@@ -188,7 +188,7 @@ def select_where(session: Session, condition: str) -> None:
 
 def select_bars(session: Session) -> None:
     """Select the vertices of the chosen bars of the histogram."""
-    chosen = in_bars(session.state, session.memo)
+    chosen = in_bars(session.state)
     if chosen is not None:
         _choose_some(session, chosen)
 

@@ -31,14 +31,14 @@ def about(state: State) -> str:
     return "L1 (weights) and mm (motion): errors against the original weights."
 
 
-def _fields(state: Any) -> dict[str, Any]:
+def _fields(state: State) -> dict[str, Any]:
     """Return the choices of what is seen, and the chosen one."""
     error = ERROR if state.rig is None or state.rig.weights is not None else {}
     field = state.compare_field if state.rig is None else field_shown(state)
     return {"options": {**FIELDS, **error}, "value": field}
 
 
-def _is_comparing(state: Any) -> bool:
+def _is_comparing(state: State) -> bool:
     return any(name == "compared" for name, *_ in state.computing)
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import param
 
 from ...document.session import Session
+from ...document.state import State
 from ...server.protocol.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
@@ -69,7 +70,7 @@ def steps_of(lesson: Lesson) -> list[dict[str, Any]]:
     return [step.to_json() for step in lesson.steps]
 
 
-def _now(state: Any) -> dict[str, Any]:
+def _now(state: State) -> dict[str, Any]:
     step = state.lesson_step
     has_plot = step is not None and step.plot and state.step in state.answers
     return {

@@ -60,7 +60,7 @@ class Shown:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        makers = {SCENE: lambda state: resolve(state, session.memo), **PARTS}
+        makers = {SCENE: lambda state: resolve(state), **PARTS}
         self._cells = {name: Recorded(partial(_made, make)) for name, make in makers.items()}
         self._meanwhile: set[str] = set()
         session.engine.follow(self._changed, VIEW)

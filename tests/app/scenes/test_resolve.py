@@ -148,10 +148,9 @@ def test_the_theme_changes_the_ink_of_the_mesh(state):
 
 def test_a_memo_changes_nothing_and_makes_nothing_twice(state):
     state.panel = "graph"
-    memo = Memo()
-    once = resolve(state, memo)
+    once = resolve(state)
     state.cut_axis = "z"
-    again = resolve(state, memo)
+    again = resolve(state)
     for name in once.actors:
         assert again.actors[name].points is once.actors[name].points
         fresh = resolve(state).actors[name]
