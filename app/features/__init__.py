@@ -139,7 +139,10 @@ class Feature:
 
     @cached_property
     def keys(self) -> Mapping[str, Callable[[Session], Any]]:
-        """Actions by their names in `frontend/keys.js`; `view.KEYS`."""
+        """Actions by their names in `frontend/page/keys.js`; `view.KEYS`.
+
+        The open panel's come first, then those of the page.
+        """
         return dict(self._declared("view", "KEYS", {}))
 
     @cached_property

@@ -1,6 +1,5 @@
 """Menus of the sidebar, without a page."""
 
-
 import panel_material_ui as pmui
 import pytest
 

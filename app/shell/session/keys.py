@@ -16,7 +16,6 @@ from ...document.loading import travel
 from ...document.look import set_camera
 from ...document.session import Session
 from ...features import FEATURES
-from ...features.pairs import results as pairs
 from ...looks.pose import play
 from ...server.protocol.received import Act
 
@@ -31,7 +30,8 @@ def watch(session: Session) -> None:
 
 def act(session: Session, name: str) -> None:
     """Do what a key or a button says."""
-    action = KEYS.get(name)
+    of_panel = FEATURES[session.state.panel].keys
+    action = of_panel.get(name) or KEYS.get(name)
     if action is not None and session.state.rig is not None:
         action(session)
 
@@ -47,11 +47,9 @@ def reset(session: Session) -> None:
 
 
 def step(session: Session, count: int) -> None:
-    """Choose the next joint of the list, or the one before; of an audit, the next pair."""
+    """Choose the next joint of the list, or the one before."""
     state = session.state
-    if state.panel == "pairs":
-        pairs.step(session, count)
-    elif not state.bare:
+    if not state.bare:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
 
@@ -85,6 +83,7 @@ def toggle_rendered(session: Session) -> None:
 
 
 KEYS: dict[str, Callable[[Session], Any]] = {
+    **{name: act for feature in FEATURES.values() for name, act in feature.keys.items()},
     "undo": partial(travel, by=-1),
     "redo": partial(travel, by=1),
     "reset": reset,
@@ -97,5 +96,3 @@ KEYS: dict[str, Callable[[Session], Any]] = {
     "child": to_child,
 }
 """By their names in `frontend/page/keys.js`."""
-for feature in FEATURES.values():
-    KEYS |= feature.keys
