@@ -87,7 +87,7 @@ def notes(session: Session) -> pmui.Page:
 
 
 def request_query() -> str:
-    """Return what the address that was asked for says behind its question mark."""
+    """Return the query of the requested address."""
     arguments = pn.state.session_args or {}
     pairs = [(name, value) for name, values in arguments.items() for value in values[:1]]
     return urlencode(pairs)

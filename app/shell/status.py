@@ -52,7 +52,7 @@ def only_weights(event: Any) -> bool:
 
 
 def warning(state: State) -> tuple[str, str] | None:
-    """Return what a person should know about the result."""
+    """Return the warnings about the result as one message."""
     texts = [link.text for link in state.warnings]
     return ("warning", " ".join(sentence(visible_text(text)) for text in texts)) if texts else None
 

@@ -205,7 +205,7 @@ class BrushController:
         self._of = state.binding
 
     def _select(self, stroke: Stroke, message: Paint) -> None:
-        """Add what the stroke touched to the selection as it was before it, or take it away."""
+        """Add the touched vertices to the selection from before the stroke, or subtract them."""
         session, before = self._session, self._selected
         count = len(session.state.rig.mesh.vertices)
         chosen = np.zeros(count, np.bool_) if before is None else before.copy()

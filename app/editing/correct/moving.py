@@ -16,7 +16,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...server.protocol.received import MoveJoint
 from ...server.protocol.sent import Knob
-from ..compute import cross_section_centre, joint_mirror
+from ..compute.limb import cross_section_centre
+from ..compute.mirror import joint_mirror
 from .commands import check_alone, correct
 
 DIGITS = 6
@@ -178,7 +179,7 @@ class JointController:
         self._take(edits)
 
     def release(self) -> None:
-        """Show what the edits say again."""
+        """End the preview: the edits are shown again."""
         if not self._holds:
             self._session.state.moved = None
 

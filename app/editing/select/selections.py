@@ -155,7 +155,7 @@ def finding_vertices(state: State) -> NDArray[np.intp]:
 
 
 def select_finding(session: Session) -> None:
-    """Select what the finding that is looked at names: vertices, and those of faces."""
+    """Select the vertices and the corners of faces that the chosen finding names."""
     state = session.state
     chosen = np.zeros(len(state.rig.mesh.vertices), np.bool_)
     chosen[finding_vertices(state)] = True

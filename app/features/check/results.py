@@ -75,7 +75,7 @@ def _reusable(state: State) -> BoneDistances | None:
 
 
 def look_at(session: Session, code: str) -> None:
-    """Mark what a finding names, and go there; an empty code, or the same again, leaves it."""
+    """Mark the elements of a finding and aim the camera; the same code again leaves it."""
     state = session.state
     if code == state.finding:
         code = ""

@@ -25,7 +25,7 @@ COLUMNS = [
 
 
 def about(state: State) -> str:
-    """Return what the columns of errors are measured against."""
+    """Name the reference of the columns of errors."""
     if state.rig is not None and state.rig.weights is None:
         return "The file has no weights to compare with."
     return "L1 (weights) and mm (motion): errors against the original weights."

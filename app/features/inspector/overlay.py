@@ -28,7 +28,7 @@ class Inspector(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a button of the card says."""
+        """Run the action of a button of the card."""
         session, state = self._session, self._session.state
         match message:
             case Close():

@@ -28,7 +28,7 @@ class LessonCard(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a person does with the card."""
+        """Run the action of a message of the card."""
         session = self._session
         match message:
             case ShowStep(step):

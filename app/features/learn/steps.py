@@ -103,7 +103,7 @@ def answer(session: Session, value: Any) -> None:
 
 
 def offer(session: Session, index: int) -> None:
-    """Choose what a button of the step says."""
+    """Apply the choices of a button of the step."""
     state = session.state
     queries = _offers(state)
     if 0 <= index < len(queries) and state.rig is not None:
@@ -183,7 +183,7 @@ def show(
 
 
 def of_character(state: State, arrival: dict[str, Any]) -> dict[str, Any]:
-    """Return what an address says of the open character, as parameters of the state."""
+    """Return an address's entries for the open character, as parameters of the state."""
     names = list(state.rig.skeleton.names)
     own = ("vertex", "clip", "methods", *SINGLE, "settled", "turns")
     plain: dict[str, Any] = {name: arrival[name] for name in own if name in arrival}

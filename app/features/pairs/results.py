@@ -84,7 +84,7 @@ def choose_tier(session: Session, tier: str) -> None:
 
 
 def overrule(session: Session, verdict: str) -> None:
-    """Say what the chosen pair is; an empty verdict leaves it to the figures."""
+    """Set the verdict on the chosen pair; an empty one leaves it to the figures."""
     state = session.state
     opened, pair = state.opened, state.chosen_pair
     if pair is None or opened.audit.verdict(pair) == verdict:

@@ -74,7 +74,7 @@ def _colours(state: State) -> dict[str, Any]:
 
 
 def notes_text(state: State) -> str:
-    """Return what could not be read of the materials that are seen, in sentences."""
+    """List the faults of the shown materials, in sentences."""
     if state.materials is None:
         return ""
     notes = state.materials.notes

@@ -29,7 +29,7 @@ def watch(session: Session) -> None:
 
 
 def act(session: Session, name: str) -> None:
-    """Do what a key or a button says."""
+    """Run the action of a key or a button."""
     of_panel = FEATURES[session.state.panel].keys
     action = of_panel.get(name) or KEYS.get(name)
     if action is not None and session.state.rig is not None:
@@ -37,7 +37,7 @@ def act(session: Session, name: str) -> None:
 
 
 def reset(session: Session) -> None:
-    """Choose what one begins with, at rest, on the panel that is open."""
+    """Reset all choices to their defaults, at rest, on the open panel."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     with batch_call_watchers(state):
