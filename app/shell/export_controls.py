@@ -110,7 +110,7 @@ def _offering(act: Callable[..., None], *arguments: Any) -> Callable[[Session], 
     return lambda session: act(session, *arguments, session.view.offer)
 
 
-def _is_empty(state: Any) -> bool:
+def _is_empty(state: State) -> bool:
     return state.rig is None
 
 

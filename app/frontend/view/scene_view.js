@@ -12,6 +12,7 @@ import {eachFrame} from "../common/frames.js"
 import {Gizmo} from "../handles/gizmo.js"
 import {Insets} from "../camera/insets.js"
 import {JointHandle} from "../handles/joint_handle.js"
+import {PointHandles} from "../handles/point_handles.js"
 import {Orbit} from "../camera/orbit.js"
 import {Lasso} from "../handles/lasso.js"
 import {plain} from "../common/panel.js"
@@ -62,10 +63,9 @@ export class SceneView {
       moved: (cut) => { this.setCut(cut); this.changed() },
       tell: (message) => model.send_msg(message),
     })
-    this.mover = new JointHandle(overlay, this.renderer, {
-      moved: () => this.changed(),
-      tell: (message) => model.send_msg(message),
-    })
+    const hears = {moved: () => this.changed(), tell: (message) => model.send_msg(message)}
+    this.mover = new JointHandle(overlay, this.renderer, hears)
+    this.points = new PointHandles(overlay, this.renderer, hears)
     this.transport = new Transport(overlay, {
       play: (on) => model.send_msg({type: "play", on}),
       seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
@@ -121,6 +121,7 @@ export class SceneView {
     if ("lasso" in message) { this.lasso.show(message.lasso) }
     this.orbit.painting = Boolean(this.brush.part || this.lasso.part)
     if ("mover" in message) { this.mover.show(message.mover) }
+    if ("points" in message) { this.points.show(message.points) }
     if ("handles" in message) { this.handles.show(message.handles) }
     if (message.views) {
       this.views = message.views
@@ -222,6 +223,7 @@ export class SceneView {
     this.gizmo.draw()
     this.handles.draw()
     this.mover.draw()
+    this.points.draw()
     this.brush.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
@@ -264,9 +266,9 @@ export class SceneView {
     this.stop()
     this.forgetRatio()
     this.surroundings?.remove()
-    const {addressBar, animation, gizmo, handles, insets, mover, orbit, rendered, renderer} = this
-    const parts = [addressBar, animation, gizmo, handles, insets, mover, orbit, rendered, renderer]
-    for (const part of parts) { part.remove() }
+    const {addressBar, animation, gizmo, handles, insets, mover, points} = this
+    const parts = [addressBar, animation, gizmo, handles, insets, mover, points]
+    for (const part of [...parts, this.orbit, this.rendered, this.renderer]) { part.remove() }
   }
 }
 

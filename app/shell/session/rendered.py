@@ -10,7 +10,7 @@ from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ...document.session import Session
-from ...messages.received import DrawFrame
+from ...server.protocol.received import DrawFrame
 from .export import Seen
 
 PROCESS = DrawingProcess()

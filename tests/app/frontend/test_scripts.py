@@ -12,7 +12,7 @@ from panel.io.resources import DIST_DIR
 
 from cutcell_app.features.inspector.facts import NO_WEIGHT
 from cutcell_app.features.pose.controls import RING_COLORS
-from cutcell_app.messages.typescript import DECLARATIONS, typescript
+from cutcell_app.server.protocol.typescript import DECLARATIONS, typescript
 from cutcell_app.shell.page import NARROW
 from cutcell_app.shell.theme import NARROW as NARROW_MEDIA
 from cutcell_app.shell.theme import SHEET
@@ -73,7 +73,7 @@ def test_no_folder_of_scripts_has_more_than_fifteen_entries():
 
 
 def test_the_types_of_messages_are_those_that_are_declared():
-    command = "python -m cutcell_app.messages.typescript"
+    command = "python -m cutcell_app.server.protocol.typescript"
     assert DECLARATIONS.read_text() == typescript(), f"messages.d.ts is stale: run {command}"
 
 

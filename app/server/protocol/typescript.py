@@ -1,4 +1,4 @@
-"""Types of the messages for the browser's scripts: `python -m cutcell_app.messages.typescript`."""
+"""Types of messages for the scripts: `python -m cutcell_app.server.protocol.typescript`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from . import received, sent
 
-DECLARATIONS = Path(__file__).parents[1] / "frontend/common/messages.d.ts"
+DECLARATIONS = Path(__file__).parents[2] / "frontend/common/messages.d.ts"
 PLAIN: dict[Any, str] = {
     Any: "any", bool: "boolean", bytes: "ArrayBuffer", float: "number", int: "number",
     str: "string", type(None): "null", sent.Numbers: "Iterable<number>", sent.Vector: "Vector",
@@ -30,7 +30,7 @@ def typescript() -> str:
 
 
 def _lines() -> Iterator[str]:
-    yield "// Written by app/messages/typescript.py."
+    yield "// Written by app/server/protocol/typescript.py."
     yield "type Vector = number[]"
     shapes = [one for module in (received, sent) for one in vars(module).values()]
     for shape in filter(is_typeddict, shapes):

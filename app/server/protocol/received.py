@@ -87,6 +87,14 @@ class MoveJoint(Message):
     done: bool = False
 
 
+class MovePoint(Message):
+    """A point that a feature declares is dragged in the scene."""
+
+    name: str
+    position: Vector
+    done: bool = False
+
+
 class MoveCut(Message):
     """The cutting plane is dragged."""
 
