@@ -18,7 +18,7 @@ from cutcell_viewers.short_names import short_names
 from tests.app.browser import changed
 from tests.conftest import SHARED_RIGS
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 RESOLUTION = 24
 REAL = SHARED_RIGS / "makehuman_clothed_mixamo.glb"
