@@ -31,8 +31,8 @@ from .server.connections import LimitedServer
 from .server.frames import check_origins
 from .server.handlers import guard
 from .server.log import log_to_terminal
-from .server.memory import settle
-from .server.writes import leave_none_behind
+from .server.memory import freeze
+from .server.writes import patch_panel_dispatch
 from .shell.page import page
 from .widgets.modules import STATIC, head
 
@@ -149,7 +149,7 @@ def begin(
 
     Further arguments are those of `panel.serve`.
     """
-    leave_none_behind()
+    patch_panel_dispatch()
     HTTPServer.configure(LimitedServer)
     server = pn.serve(
         {"/": lambda: page(path, opened, actors, lesson)},
@@ -169,18 +169,18 @@ def begin(
     HTTPServer.configure(None)  # of other servers in this process
     text = guard(server._tornado, allowed_hosts(address, port), STATIC, head(), frames)
     server.io_loop.add_callback(lambda: text.text)
-    server.io_loop.add_callback(_settle, server)
+    server.io_loop.add_callback(_freeze_when_unused, server)
     return server
 
 
 def _warm_up(server: Any) -> None:
     warm_up()
-    server.io_loop.add_callback(_settle, server)
+    server.io_loop.add_callback(_freeze_when_unused, server)
 
 
-def _settle(server: Any) -> None:
+def _freeze_when_unused(server: Any) -> None:
     if not server.get_sessions("/"):  # memory of sessions must stay collectable
-        settle()
+        freeze()
 
 
 def free_port(port: int, address: str = "localhost") -> int:

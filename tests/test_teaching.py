@@ -134,10 +134,10 @@ ADDRESSES = re.findall(r"`(\?[^`]+)`", (TEACHING / "index.md").read_text(encodin
 
 @pytest.mark.parametrize("address", ADDRESSES)
 def test_addresses_of_demos_can_be_opened(address):
-    read = read_address(address)
+    choices, _ = read_address(address)
     query = dict(parse_qsl(address))
     rig = load(demo_path(query["?rig"]))
-    assert read.choices["panel"] == query["panel"]
-    assert read.choices.get("bone", "hips") in rig.skeleton.names
-    assert set(read.choices.get("methods", [])) <= set(METHODS)
-    assert all(joint < len(rig.skeleton.names) for joint in read.settings.get("turns", {}))
+    assert choices["panel"] == query["panel"]
+    assert choices.get("bone", "hips") in rig.skeleton.names
+    assert set(choices.get("methods", [])) <= set(METHODS)
+    assert all(joint < len(rig.skeleton.names) for joint in choices.get("turns", {}))

@@ -64,7 +64,7 @@ def show(
 
     from PIL import Image
 
-    from .film import Order
+    from .order import Order
     from .process import draw_isolated
 
     theme = "dark" if dark else "light"
@@ -113,7 +113,7 @@ def figure(
     """
     from cutcell.errors import ParameterError
 
-    from .film import Order
+    from .order import Order
     from .process import draw_isolated
 
     if not descriptions:
@@ -147,7 +147,7 @@ def plotter(
     """
     from .camera import framing
     from .palette import DARK, LIGHT
-    from .polydata import add_legend
+    from .plotters import add_legend
     from .process import require_opengl
     from .scene import Scene
 
@@ -178,6 +178,6 @@ def describe(plotter: Plotter) -> Description:
     --------
     cutcell_viewers.description.Actor.from_polydata : Turns one mesh into an actor.
     """
-    from .polydata import describe
+    from .plotters import describe
 
     return describe(plotter)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 VIEW_ANGLE = 30.0
 PAGE_HEIGHT = 800.0
@@ -70,11 +70,11 @@ def first_direction(size: NDArray[np.float64]) -> tuple[float, float, float]:
     return (aside, above, ahead) if x >= z else (ahead, above, aside)
 
 
-def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:
+def across(direction: ArrayLike, up: ArrayLike = (0, 1, 0)) -> NDArray[np.float64]:
     """Return the rows right, up and towards the eye of a view from a direction."""
     toward = np.array(direction, float)
     toward /= np.linalg.norm(toward)
-    right = np.cross([0, 1, 0], toward)
+    right = np.cross(np.asarray(up, float), toward)
     right /= np.linalg.norm(right)
     return np.array([right, np.cross(toward, right), toward])
 
@@ -82,14 +82,9 @@ def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:
 def sees(camera: Camera, points: NDArray[np.float64], aspect: float = 1.0) -> bool:
     """Return whether all points (n, 3) are inside a picture of an aspect, width over height."""
     eye = np.array(camera.position)
-    toward = eye - np.array(camera.focal_point)
-    toward /= np.linalg.norm(toward)
-    right = np.cross(camera.up, toward)
-    right /= np.linalg.norm(right)
-    ahead = points - eye
-    half = -(ahead @ toward) * np.tan(np.radians(VIEW_ANGLE / 2))
-    high = np.abs(ahead @ np.cross(toward, right))
-    return bool(np.all((high <= half) & (np.abs(ahead @ right) <= aspect * half)))
+    x, y, z = across(eye - np.array(camera.focal_point), camera.up) @ (points - eye).T
+    half = -z * np.tan(np.radians(VIEW_ANGLE / 2))
+    return bool(np.all((np.abs(y) <= half) & (np.abs(x) <= aspect * half)))
 
 
 def around(camera: Camera, angle: float) -> Camera:

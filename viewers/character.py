@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.geometry.triangles import normals
 from cutcell.geometry.welded import WeldedMesh
+from cutcell.graph import Lattice
 from cutcell.rig import Rig, TriangleMesh
 
 from .description import Actor
@@ -32,6 +33,16 @@ def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
 def from_scene(rig: Rig, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Take points (n, 3) from the scene's space to the rig's."""
     return np.asarray(np.linalg.solve(rig.world[:3, :3], (points - rig.world[:3, 3]).T).T, float)
+
+
+def lattice_to_scene(rig: Rig, lattice: Lattice, points: ArrayLike) -> NDArray[np.float64]:
+    """Take points (n, 3) from a lattice's unit cube to the scene's space."""
+    return to_scene(rig, lattice.to_file(points))
+
+
+def cell_length(rig: Rig, lattice: Lattice) -> float:
+    """Return the length of a lattice's cell in the scene."""
+    return lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
 
 
 def in_scene(rig: Rig, mesh: TriangleMesh) -> TriangleMesh:
@@ -171,8 +182,7 @@ def drawn_segments(
     child = child[np.argsort(parents[child], kind="stable")]
     leaf = np.setdiff1d(np.arange(len(joints)), parents)
     along = np.where(parents[leaf, None] >= 0, joints[leaf] - joints[parents[leaf]], [0.0, 1, 0])
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
+    along, length = unit_vectors(along)
     stub = along * np.clip(0.4 * np.where(length > 0, length, 1), 0.006 * size, 0.03 * size)
     joint = np.concatenate([parents[child], leaf])
     return joints[joint], np.concatenate([joints[child], joints[leaf] + stub]), joint
@@ -185,9 +195,7 @@ def bone_frames(
 
     Segments without length point up.
     """
-    along = end - start
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
+    along, length = unit_vectors(end - start)
     helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
     side = np.cross(along, helper)
     side /= np.linalg.norm(side, axis=1, keepdims=True)
@@ -204,8 +212,8 @@ def _octahedra(
     ring = start + along * np.minimum(0.14 * length, 1.5 * radius)
     wide = radius + 1.4 * wider[:, None]
     around = [ring + wide * d for d in (side, other, -side, -other)]
-    more = 2 * wider[:, None] * along
-    return np.stack([start - more, *around, end + 2 * more], axis=1)
+    overhang = 2 * wider[:, None] * along
+    return np.stack([start - overhang, *around, end + 2 * overhang], axis=1)
 
 
 def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> Actor:
@@ -253,5 +261,10 @@ def smooth_normals(
         near = (group[:-shift] == group[shift:]) & ((unit[a] * unit[b]).sum(axis=1) > CREASE)
         np.add.at(total, a[near], face_sum[b[near]])
         np.add.at(total, b[near], face_sum[a[near]])
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    return np.where(length > 0, total / np.where(length > 0, length, 1), [0.0, 1, 0])
+    return unit_vectors(total)[0]
+
+
+def unit_vectors(vectors: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
+    """Return unit vectors (n, 3), which point up where the length is zero, and lengths (n, 1)."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(length > 0, vectors / np.where(length > 0, length, 1), [0.0, 1, 0]), length

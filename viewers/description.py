@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cutcell.io.materials.face_colors import FaceColors
 from cutcell.runtime.repr import Summarized
 
-from .palette import BODY, Color
+from .palette import BODY, REPLACEABLE, Color
 from .skin import Blending, Skin
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Actor:
         Depth behind the cut that is kept; 0 keeps all.
     reading : Reading, optional
         Value shown where the pointer rests on it.
-    film : bool
+    follows_wavefront : bool
         Whether only scalars up to the description's `front` are coloured.
     """
 
@@ -143,7 +143,7 @@ class Actor:
     apart: Apart | None = None
     view: int | None = None
     reading: Reading | None = None
-    film: bool = False
+    follows_wavefront: bool = False
 
     def __post_init__(self) -> None:
         for name in ("points", "normals", "scalars"):
@@ -193,9 +193,9 @@ class Actor:
         -------
         Actor
         """
-        from .polydata import actor_of
+        from .polydata import arrays_of
 
-        return actor_of(mesh, scalars, **settings)
+        return cls(**{**arrays_of(mesh, scalars), **settings})
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ class Description(Summarized):
     views : tuple of str
         Captions of the views side by side under one camera; a single view has none.
     front : float, optional
-        Scalars above it are left grey on the actors that are part of the film.
+        Scalars above it are grey on the actors that follow the wavefront.
     images : array, shape (k, s, s, 4), uint8, optional
         Images of the actors' `materials`; see `materials.Textures`.
     blending : {"linear", "dual"}
@@ -278,6 +278,19 @@ def _convert(owner: object, name: str, kind: type[np.generic]) -> None:
     array = getattr(owner, name)
     if array is not None:
         object.__setattr__(owner, name, np.ascontiguousarray(array, kind))
+
+
+def with_colormap(description: Description, name: str) -> Description:
+    """Return a scene whose weights, distances and depths have the colours of another map."""
+    if name == "default":
+        return description
+    actors, legend = dict(description.actors), description.legend
+    for key, actor in actors.items():
+        if actor.scalars is not None and actor.colormap in REPLACEABLE:
+            actors[key] = replace(actor, colormap=f"{actor.colormap}:{name}")
+    if legend is not None and legend.colormap in REPLACEABLE:
+        legend = replace(legend, colormap=f"{legend.colormap}:{name}")
+    return replace(description, actors=actors, legend=legend)
 
 
 def in_view(description: Description, view: int) -> Description:

@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from cutcell.rig import Rig
 
-from .character import character, pose_in_scene, to_scene
-from .description import Apart, Description, Legend
-from .skin import Blending, Gap, Skin
+from .character import to_scene
+from .description import Apart, Legend
+from .skin import Blending, Gap
 
 FLOOR = 3.0
 """Least end of the scale in millimetres: less would not be visible."""
@@ -27,36 +27,6 @@ def gap_between(
     """
     points = to_scene(rig, rig.mesh.vertices)
     return Gap(points, weights, reference, millimetres(rig), blending)
-
-
-def error_scene(
-    rig: Rig,
-    weights: ArrayLike,
-    reference: ArrayLike,
-    transforms: ArrayLike,
-    *,
-    chosen: int | None = None,
-    skeleton: bool = True,
-) -> Description:
-    """Return the scene of a posed character, coloured by the distance of two sets of weights.
-
-    Parameters
-    ----------
-    rig : Rig
-    weights, reference : array_like, shape (n, j)
-        The character is posed by the first, and compared with the second.
-    transforms : array_like, shape (j, 4, 4)
-        Skinning matrices in the rig's space, as from `cutcell.forward_kinematics`.
-    chosen : int, optional
-        The joint that is highlighted.
-    skeleton : bool
-    """
-    pose = pose_in_scene(rig, transforms)
-    limits = error_limits(gap_between(rig, weights, reference).lengths(pose))
-    apart = Apart(Skin.of_weights(reference), millimetres(rig))
-    style = error_look(len(rig.mesh.vertices), apart, limits)
-    actors = character(rig, weights, chosen, skeleton, **style)
-    return Description(actors, pose=pose, legend=error_legend(limits))
 
 
 def error_look(count: int, apart: Apart, limits: tuple[float, float]) -> dict[str, Any]:

@@ -20,14 +20,14 @@ from cutcell.runtime.progress import Progress
 from cutcell.runtime.writing import write_all
 
 from .description import Description, Legend, in_view
+from .order import MAX_PANELS, Order, ground
 from .palette import THEMES, Theme, colormap, to_hex
-from .studio import Studio
+from .studio import Studio, box_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .camera import Camera
-    from .film import Order
 
 WIDTH = 7.2
 """Inches, the width of a printed page's text. One panel alone has half of it."""
@@ -53,8 +53,6 @@ NUMBER = re.compile(r"([-+]?\d+(?:\.\d+)?) ?(.*)")
 def draw_figure(order: Order, path: Path, progress: Progress) -> None:
     """Draw the panels of an order into a PDF, SVG or PNG; see `film.draw`."""
     from matplotlib import rc_context
-
-    from .film import MAX_PANELS, ground
 
     panels = [one for whole in order.panels or (order.description,) for one in _views(whole)]
     if len(panels) > MAX_PANELS:
@@ -122,8 +120,6 @@ def _pictures(
 
 
 def _camera(order: Order, scenes: list[Description], studio: Studio) -> Camera:
-    from .film import box_of
-
     corners = np.concatenate([box_of(scene, [scene.pose]) for scene in scenes])
     box = np.stack([corners.min(axis=0), corners.max(axis=0)])
     return studio.camera(order.direction, box)

@@ -84,49 +84,33 @@ def camera_on(
     aspect : float
         Width over height of the picture.
     """
-    vertices, joints = rig.mesh.vertices, rig.skeleton.joints
-    corners = rig.mesh.faces[finding.faces].ravel()
-    places = np.concatenate([vertices[finding.vertices], vertices[corners], joints[finding.joints]])
-    if not len(places):
-        return None
-    points = to_scene(rig, places)
-    pose = finding_pose(rig, finding)
-    if pose is not None and rig.weights is not None:
-        of = np.concatenate([finding.vertices, rig.mesh.faces[finding.faces].ravel()])
-        weights = np.concatenate([rig.weights[of], np.eye(len(joints))[finding.joints]])
-        points = Skin.of_weights(weights).move(points, pose)
-    return _towards(points, bounds, aspect)
+    marks = Description(finding_marks(rig, finding), pose=finding_pose(rig, finding))
+    return camera_on_marks(marks, aspect, bounds=bounds)
 
 
 def camera_on_marks(
     description: Description,
     aspect: float,
     direction: tuple[float, float, float] | None = None,
+    bounds: NDArray[np.float64] | None = None,
 ) -> Camera | None:
     """Return a camera that sees the marks of a scene; None if there are none.
 
-    The direction is by default from the side of the marks.
+    The direction is by default from the side of the marks. The bounds are those of the body, by
+    default of the scene.
     """
     marks = [actor for name, actor in description.actors.items() if name.startswith("finding")]
     points = [actor.points_in(description.pose, description.blending) for actor in marks]
     if not points:
         return None
-    return _towards(np.concatenate(points), description.bounds, aspect, direction)
-
-
-def _towards(
-    points: NDArray[np.floating],
-    bounds: NDArray[np.float64],
-    aspect: float,
-    direction: tuple[float, float, float] | None = None,
-) -> Camera:
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = (end(np.concatenate(points), axis=0) for end in (np.min, np.max))
+    bounds = description.bounds if bounds is None else bounds
     least = NEAREST * float(np.linalg.norm(bounds[1] - bounds[0]))
-    more = np.maximum(least - (high - low), 0) / 2
+    padding = np.maximum(least - (high - low), 0) / 2
     middle = bounds.mean(axis=0)
     side = (low + high) / 2 - middle
     if direction is None:
         # From their side, and still from the front, and never straight from above.
         towards = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
         direction = tuple(towards.tolist())
-    return framing(np.stack([low - more, high + more]), aspect, direction)
+    return framing(np.stack([low - padding, high + padding]), aspect, direction)

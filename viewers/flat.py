@@ -21,7 +21,7 @@ from cutcell.graph import MESH, SURFACE, CutCellGraph, build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
 
-from .character import to_scene
+from .character import lattice_to_scene
 from .distance_scene import unit_of
 from .plane_section import plane_outline
 from .ray_slice import RaySlice, slice_rays
@@ -84,7 +84,7 @@ class FlatSection:
         return np.where(self.flips, 1 - chosen, chosen)
 
     def data(self) -> dict[str, Any]:
-        """Return what the browser needs, as JSON has it; see `app/frontend/flat/scene.js`."""
+        """Return the section as JSON values for the browser; see `app/frontend/flat/scene.js`."""
         graph, outline = self.graph, self.flat(self.outline)
         margin = 1 / graph.lattice.resolution
         whole = self.flat(graph.lattice.to_unit(self.rig.mesh.bounds))
@@ -121,7 +121,7 @@ class FlatSection:
         """Return the scene's point at the picture's origin, and the steps to the right and up."""
         points = np.tile(self.origin, (3, 1))
         points[:, self.axes] = np.abs(np.array([[0, 0], [1, 0], [0, 1]]) - self.flips)
-        origin, right, up = to_scene(self.rig, self.graph.lattice.to_file(points))
+        origin, right, up = lattice_to_scene(self.rig, self.graph.lattice, points)
         return {
             name: at.tolist()
             for name, at in (("origin", origin), ("right", right - origin), ("up", up - origin))

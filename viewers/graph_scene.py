@@ -11,7 +11,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from cutcell.rig import Rig
 
 from . import palette
-from .character import to_scene
+from .character import cell_length, lattice_to_scene
 from .description import Actor, Cut, Description, Reading
 from .distance_scene import distance_limits, shown_distance
 
@@ -79,8 +79,8 @@ def graph_scene(
         With the actors "mesh edges", "interior edges" and "surface edges", thin, thick and dashed,
         and "mesh nodes", "interior nodes" and "surface nodes", hidden: balls, squares, triangles.
     """
-    nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
-    cell = to_scene_length(rig, graph)
+    nodes = lattice_to_scene(rig, graph.lattice, graph.nodes).astype(np.float32)
+    cell = cell_length(rig, graph.lattice)
     spacing = {kind: _usual_length(nodes, graph, kind) for kind in LAYERS.values()}
     point_colors = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
@@ -134,12 +134,6 @@ def nearest_nodes(graph: CutCellGraph, other: CutCellGraph) -> NDArray[np.intp]:
     return np.flatnonzero(other.connected)[near]
 
 
-def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
-    """Return the length of a cell of the lattice in the scene."""
-    lattice = graph.lattice
-    return lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
-
-
 def component_colors(graph: CutCellGraph) -> tuple[NDArray[np.uint8], int]:
     """Return a colour (N, 3) for each node by its connected component, and their number.
 
@@ -157,8 +151,8 @@ def node_marks(rig: Rig, graph: CutCellGraph, node: int, theme: palette.Theme) -
     """Return the mark of a node, the edges that lead from it, and the nodes they lead to."""
     indptr, indices, _ = graph.adjacency
     ring = np.asarray(indices[indptr[node] : indptr[node + 1]])
-    points = to_scene(rig, graph.lattice.to_file(graph.nodes[[node, *ring]]))
-    cell, ink = to_scene_length(rig, graph), theme.ink
+    points = lattice_to_scene(rig, graph.lattice, graph.nodes[[node, *ring]])
+    cell, ink = cell_length(rig, graph.lattice), theme.ink
     ends = np.stack([np.broadcast_to(points[:1], points[1:].shape), points[1:]], axis=1)
     reading = Reading("node ", ring)
     return {

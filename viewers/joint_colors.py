@@ -58,7 +58,7 @@ def joint_colors(
     nearby: ArrayLike = (),
     sizes: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Return one colour a joint, distinct from those of its neighbours to every kind of eye.
+    """Return a colour for each joint, distinct from its neighbours' also to colour-blind people.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def joint_colors(
 def _conflicts(
     above: NDArray, touching: NDArray, nearby: NDArray, size: NDArray
 ) -> NDArray[np.float64]:
-    """Return how much each two joints should differ, (j, j), from parents, pairs and sizes."""
+    """Return the weight of each pair's difference, (j, j), by parents, pairs and sizes."""
     large = np.sqrt(size / size.max(initial=1e-300))
     conflict = 1e-3 + 2e-2 * np.outer(large, large)
     child = np.flatnonzero(above >= 0)
@@ -117,7 +117,7 @@ def _conflicts(
 
 @cache
 def _differences() -> NDArray[np.float64]:
-    """Return the differences of joints' colours to the eye that sees them least, (c, c)."""
+    """Return the smallest differences of joints' colours over all eyes, (c, c)."""
     colors = np.array(JOINT_COLORS) / 255
     return np.minimum(ALL_EYES * differences(colors, ("all cones",)), differences(colors))
 

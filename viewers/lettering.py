@@ -15,9 +15,9 @@ from .palette import Color, Theme, colormap, to_bytes
 from .tiles import Tile
 
 CARD = {"light": (255, 255, 255, 216), "dark": (24, 28, 36, 216)}
-MOST = 200
+MAX_LETTERS = 200
 """Largest number of letters of a text; far fewer fit."""
-SMALLER = 1.4
+MAX_SHRINKING = 1.4
 """Largest factor by which captions are shrunk to fit."""
 LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
 
@@ -29,11 +29,11 @@ def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Im
     pad, bar = round(1.1 * unit), round(0.75 * unit)
     least = ends.getlength(f"{legend.low}     {legend.high}")
     indent = 2 * bar + round(0.6 * unit)
-    swatches = [(color, printable(text, MOST)) for color, text in legend.swatches]
+    swatches = [(color, printable(text, MAX_LETTERS)) for color, text in legend.swatches]
     least = max([least, *(indent + ends.getlength(text) for _, text in swatches)])
-    needed = max(18 * unit, title.getlength(printable(legend.title, MOST)), least)
+    needed = max(18 * unit, title.getlength(printable(legend.title, MAX_LETTERS)), least)
     width = ceil(min(needed, size[0] - 4 * pad))
-    name = _shortened(printable(legend.title, MOST), title, width)
+    name = _shortened(printable(legend.title, MAX_LETTERS), title, width)
     scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
     row = _height(ends) + round(0.4 * unit)
     height = _height(title) + round(0.7 * unit) + scale + row * len(swatches)
@@ -63,7 +63,7 @@ def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Im
 
 
 def free_corner(covered: NDArray[np.bool_], card: Image.Image) -> tuple[int, int] | None:
-    """Return the corner of a picture in which a card covers nothing; None if there is none.
+    """Return an empty corner of a picture for a card; None if there is none.
 
     `covered`, shape (height, width), marks the pixels that show something.
     """
@@ -96,10 +96,10 @@ def write_captions(
     """
     unit = _unit(picture.shape[1::-1])
     font, pad = _font(1.25 * unit), round(0.7 * unit)
-    names = [printable(text, MOST) for text in captions]
+    names = [printable(text, MAX_LETTERS) for text in captions]
     room = max(min(width for _, _, width, _ in places) - 7 * pad, 1)
     longest = max(map(font.getlength, names))
-    font = _font(1.25 * unit / min(max(longest / room, 1), SMALLER))
+    font = _font(1.25 * unit / min(max(longest / room, 1), MAX_SHRINKING))
     image = Image.fromarray(np.ascontiguousarray(picture))
     draw = ImageDraw.Draw(image, "RGBA")
     for text, (left, top, width, height) in zip(names, places, strict=True):

@@ -10,5 +10,5 @@ SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
 
 
 def shading(actor: Actor) -> tuple[float, float]:
-    """Return how much of its colour an actor has without light, and how much by light."""
+    """Return the ambient and the diffuse coefficient of an actor."""
     return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)

@@ -14,7 +14,7 @@ from cutcell.io.materials.transfer import read_materials
 from cutcell.rig import Rig
 
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA")
-LARGEST = 2**26
+MAX_IMAGE_PIXELS = 2**26
 """Pixels of an image that is decoded: 8192 by 8192."""
 SIDES = (1024, 512, 256, 128)
 MAX_PIXELS = 2**23
@@ -72,8 +72,8 @@ def decoded(
     problems : dict of int to str
         Why some layers cannot be.
     """
-    used_layers, more = layers[:MAX_LAYERS], range(MAX_LAYERS, len(layers))
-    problems = dict.fromkeys(more, f"{MAX_LAYERS} images of a file are shown, it has more")
+    used_layers, surplus = layers[:MAX_LAYERS], range(MAX_LAYERS, len(layers))
+    problems = dict.fromkeys(surplus, f"{MAX_LAYERS} images of a file are shown, it has more")
     opened = [_opened(image) for image in images]
     side = _side(opened, len(used_layers))
     pixels = np.full((len(used_layers), side, side, 4), OPAQUE, np.uint8)
@@ -140,7 +140,7 @@ def _opened(image: StoredImage) -> tuple[int, int] | str:
         return _TOO_LARGE
     except Exception:  # whatever Pillow's readers make of it
         return "it is no PNG, JPEG, WebP, BMP or TGA, or damaged"
-    return _TOO_LARGE if width * height > LARGEST else (width, height)
+    return _TOO_LARGE if width * height > MAX_IMAGE_PIXELS else (width, height)
 
 
 _TOO_LARGE = "it has more than 67 million pixels"

@@ -7,6 +7,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutcell.checks import check_choice
+
 Color = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""
 
@@ -117,6 +119,10 @@ STOPS = {
     "inside": "b0b6c2 d6cee2 987ebe 5c3e8c",
 }
 
+COLORMAPS = ("default", "viridis", "cividis", "plasma", "inferno", "magma", "turbo", "gray")
+"""Colour maps that the page offers: ours, and some of Matplotlib's. Scenes take any of those."""
+REPLACEABLE = ("weight", "distance", "reached", "depth")
+"""Maps in whose place one of Matplotlib's may be chosen."""
 TEXELS = 512
 UNREACHED_TEXELS = 8
 """The last texels of the map "reached", which is else like "distance"."""
@@ -130,36 +136,54 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    name : {"weight", "distance", "reached", "error", "difference", "count", "depth", "winding",
-        "inside"}
+    name : str
+        "weight", "distance", "reached", "error", "difference", "count", "depth", "winding" or
+        "inside". After a colon follows the name of one of Matplotlib's maps whose colours are
+        used instead: "distance:viridis" has lines of equal distance, too.
+
+    Raises
+    ------
+    ParameterError
+        Matplotlib has no such map.
 
     Returns
     -------
     array, shape (512, 3), uint8
         The colour of values from the lower to the upper limit.
     """
-    codes = STOPS["distance" if name == "reached" else name].split()
-    stops = _srgb_to_oklab(np.array([list(bytes.fromhex(code)) for code in codes]) / 255)
-    at = np.linspace(0, len(stops) - 1, TEXELS)
-    mixed = np.stack([np.interp(at, np.arange(len(stops)), c) for c in stops.T], axis=1)
-    table = np.clip(_oklab_to_srgb(mixed), 0, 1)
-    if name in ("distance", "reached"):
+    field, _, other = name.partition(":")
+    table = _of_matplotlib(other) if other else _of_stops(field)
+    if field in ("distance", "reached"):
         table = _with_iso_lines(table)
-    if name == "reached":
+    if field == "reached":
         table = _with_unreached(table)
     colors = to_bytes(table)
     colors.flags.writeable = False
     return colors
 
 
+def _of_stops(field: str) -> NDArray[np.float64]:
+    codes = STOPS["distance" if field == "reached" else field].split()
+    stops = _srgb_to_oklab(np.array([list(bytes.fromhex(code)) for code in codes]) / 255)
+    at = np.linspace(0, len(stops) - 1, TEXELS)
+    mixed = np.stack([np.interp(at, np.arange(len(stops)), c) for c in stops.T], axis=1)
+    return np.clip(_oklab_to_srgb(mixed), 0, 1)
+
+
+def _of_matplotlib(name: str) -> NDArray[np.float64]:
+    from matplotlib import colormaps  # 18 MB of memory, once a person chooses one
+
+    return colormaps[check_choice("colormap", name, colormaps)](np.linspace(0, 1, TEXELS))[:, :3]
+
+
 def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
-    """Return colours (n, 3), from 0 to 1, as an eye sees them: one of `EYES`."""
+    """Simulate how an eye, one of `EYES`, sees colours (n, 3) from 0 to 1."""
     linear = _to_linear(np.asarray(colors, float)) @ np.array(EYES[eye]).T
     return np.clip(_from_linear(linear), 0, 1)
 
 
 def differences(colors: ArrayLike, eyes: Iterable[str] = tuple(EYES)) -> NDArray[np.float64]:
-    """Return the distances (n, n) of colours (n, 3) in OKLab, to the eye that sees them least."""
+    """Return the distances (n, n) of colours (n, 3) in OKLab: the smallest over some eyes."""
     labs = np.stack([_srgb_to_oklab(as_seen(colors, eye)) for eye in eyes])
     return np.linalg.norm(labs[:, :, None] - labs[:, None], axis=3).min(axis=0)
 

@@ -1,6 +1,7 @@
 """The character in a pose."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +11,9 @@ from cutcell.rig import Rig
 from cutcell.rig.clip import Clip, Derived, Motion
 
 from .character import character, pose_in_scene
-from .description import Description
+from .description import Apart, Description
+from .error_scene import error_legend, error_limits, error_look, gap_between, millimetres
+from .skin import Skin
 
 SWING_SECONDS = 2.4
 SWING_FRAMES = 48
@@ -21,10 +24,11 @@ def pose_scene(
     weights: ArrayLike,
     transforms: ArrayLike,
     *,
+    reference: ArrayLike | None = None,
     chosen: int | None = None,
     skeleton: bool = True,
 ) -> Description:
-    """Return the scene of a posed character, plainly shaded.
+    """Return the scene of a posed character, plainly shaded or in the colours of an error.
 
     Parameters
     ----------
@@ -32,12 +36,18 @@ def pose_scene(
     weights : array_like, shape (n, j)
     transforms : array_like, shape (j, 4, 4)
         Skinning matrices in the rig's space, as from `cutcell.forward_kinematics`.
+    reference : array_like, shape (n, j), optional
+        Weights by which the positions differ from those shown: the error is coloured.
     chosen : int, optional
         The joint that is highlighted.
     skeleton : bool
     """
-    actors = character(rig, weights, chosen, skeleton)
-    return Description(actors, pose=pose_in_scene(rig, transforms))
+    pose, style, legend = pose_in_scene(rig, transforms), dict[str, Any](), None
+    if reference is not None:
+        limits = error_limits(gap_between(rig, weights, reference).lengths(pose))
+        apart = Apart(Skin.of_weights(reference), millimetres(rig))
+        style, legend = error_look(len(rig.mesh.vertices), apart, limits), error_legend(limits)
+    return Description(character(rig, weights, chosen, skeleton, **style), pose=pose, legend=legend)
 
 
 def clip_in_scene(rig: Rig, clip: Clip) -> Clip:

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import threading
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -25,13 +24,11 @@ from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.subprocesses import end_first_without_memory, python_environment
 from cutcell.runtime.writing import write_all
 
-from .camera import Camera
-from .description import Description, in_view
-from .film import Order, draw
-from .tiles import Tile
+from .order import Order
+from .palette import THEMES
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .studio import Studio
 
 IDLE_SECONDS = 120.0
 """Seconds without a request after which the process ends."""
@@ -51,32 +48,6 @@ plotter.screenshot(return_img=True)
 """
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
-    """A picture of the page's canvas, transparent, without its legend and captions.
-
-    Parameters
-    ----------
-    description : Description
-    camera : Camera
-    size : (int, int)
-        Width and height in pixels.
-    tiles : tuple of Tile
-        The rectangle of each view.
-    pixel_ratio : float
-        Pixels of the picture per pixel of the page.
-    fine : bool
-        Whether corners are darkened by ambient occlusion and edges are smooth.
-    """
-
-    description: Description
-    camera: Camera
-    size: tuple[int, int]
-    tiles: tuple[Tile, ...]
-    pixel_ratio: float = 1.0
-    fine: bool = True
-
-
 class DrawingProcess:
     """A subprocess that draws requests in turn; it starts when needed and ends when idle."""
 
@@ -86,12 +57,15 @@ class DrawingProcess:
         self._messages: Queue[Any] = Queue()
         self._timer: threading.Timer | None = None
 
-    def draw(self, request: Frame | tuple[Order, Path], progress: Progress = silent) -> Any:
-        """Return a frame as a PNG, or draw an order into a file; other threads wait.
+    def draw(self, order: Order, path: Path | None = None, progress: Progress = silent) -> Any:
+        """Draw an order into a file, or return it as a PNG; other threads wait.
 
         Parameters
         ----------
-        request : Frame or (Order, Path)
+        order : Order
+        path : Path, optional
+            When left out, the picture is transparent, without a legend, and has the order's tiles
+            and camera: the canvas of a page.
         progress : callable
             Called with the stage and the completed part; if it raises, the process ends.
 
@@ -104,12 +78,12 @@ class DrawingProcess:
             self._restart_timer()
             process = self._process or self._start()
             try:
-                pickle.dump(request, process.stdin, 5)
+                pickle.dump((order, path), process.stdin, 5)
                 process.stdin.flush()
                 answer, is_last = self._await_answer(progress)
             except (OSError, EOFError):
                 process.wait()
-                reason = self._last_complaint() or f"exit code {process.returncode}"
+                reason = self._last_error_line() or f"exit code {process.returncode}"
                 self._end()
                 require_opengl()
                 raise RuntimeError(f"the picture could not be drawn: {reason}") from None
@@ -137,12 +111,12 @@ class DrawingProcess:
         self._timer.start()
 
     def _start(self) -> Any:
-        self._complaints = TemporaryFile()  # noqa: SIM115 (never full, as a pipe may be)
+        self._errors = TemporaryFile()  # noqa: SIM115 (never full, as a pipe may be)
         self._process = subprocess.Popen(
             [sys.executable, "-c", f"import {__name__} as drawing; drawing.main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=self._complaints,
+            stderr=self._errors,
             env=python_environment(),
         )
         self._messages = Queue()
@@ -163,9 +137,9 @@ class DrawingProcess:
                     return message[1:]
                 status = message[1:]
 
-    def _last_complaint(self) -> str:
-        self._complaints.seek(0)
-        lines = self._complaints.read().decode(errors="replace").strip().splitlines()
+    def _last_error_line(self) -> str:
+        self._errors.seek(0)
+        lines = self._errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else ""
 
     def _end(self) -> None:
@@ -175,7 +149,7 @@ class DrawingProcess:
             process.wait()
             with suppress(OSError):
                 process.stdin.close()
-            self._complaints.close()
+            self._errors.close()
 
 
 def draw_isolated(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -189,7 +163,7 @@ def draw_isolated(order: Order, path: str | Path, progress: Progress = silent) -
     with TemporaryDirectory(prefix="cutcell-draw-") as folder:
         drawn = Path(folder) / f"drawn{path.suffix.lower()}"
         try:
-            process.draw((order, drawn), progress)
+            process.draw(order, drawn, progress)
         finally:
             process.close()
         write_all({path: drawn.read_bytes()})
@@ -212,7 +186,7 @@ def _can_draw() -> bool:
 
 
 def _read(stream: IO[bytes], messages: Queue[Any]) -> None:
-    """Hand on pickled messages until the stream ends, then None."""
+    """Queue pickled messages until the stream ends, then None."""
     with stream, suppress(EOFError, OSError, pickle.UnpicklingError):
         while True:
             messages.put(pickle.load(stream))
@@ -223,10 +197,12 @@ def main() -> None:
     """Answer the requests of the input until it ends."""
     import psutil
 
+    from .film import draw
+
     end_first_without_memory()
     source, sink = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever libraries print is no message
-    scenes: dict[Any, list[Scene]] = {}
+    studios: dict[Any, Studio] = {}
 
     def send(*message: object) -> None:
         pickle.dump(message, sink, 5)
@@ -234,41 +210,37 @@ def main() -> None:
 
     while True:
         try:
-            request = pickle.load(source)
+            order, path = pickle.load(source)
         except EOFError:
             return
         answer: object = None
         try:
-            if isinstance(request, Frame):
-                answer = _draw_frame(request, scenes)
+            if path is None:
+                answer = _draw_canvas(order, studios)
             else:
-                order, path = request
                 draw(order, path, lambda *status: send("progress", *status))
         except CutcellError as error:
             answer = error
         send("answer", answer, psutil.Process().memory_info().rss > MAX_MEMORY)
 
 
-def _draw_frame(frame: Frame, scenes: dict[Any, list[Scene]]) -> bytes:
-    """Return a frame as a PNG; scenes are reused, as their shaders take seconds to compile."""
+def _draw_canvas(order: Order, studios: dict[Any, Studio]) -> bytes:
+    """Return a PNG of a page's canvas; studios are reused, as shaders take seconds to compile."""
     from PIL import Image
 
-    from .scene import Scene
+    from .studio import Studio
 
-    key = (frame.size, frame.tiles, frame.pixel_ratio, frame.fine)
-    if key not in scenes:
-        while len(scenes) >= MAX_SIZES:
-            for scene in scenes.pop(next(iter(scenes))):
-                scene.close()
-        scenes[key] = [
-            Scene(size=tile[2:], fine=frame.fine, pixel_ratio=frame.pixel_ratio)
-            for tile in frame.tiles
-        ]
-    picture = Image.new("RGBA", frame.size)
-    for view, (scene, tile) in enumerate(zip(scenes[key], frame.tiles, strict=True)):
-        scene.show(in_view(frame.description, view))
-        scene.set_camera(frame.camera)
-        picture.paste(Image.fromarray(scene.render_clear(), "RGBA"), tile[:2])
+    key = (order.size, order.tiles, order.page_height, order.fine)
+    if key not in studios:
+        while len(studios) >= MAX_SIZES:
+            studios.pop(next(iter(studios))).close()
+        look: Any = {"transparent": True, "tiles": order.tiles, "fine": order.fine}
+        theme = THEMES[order.theme]
+        studios[key] = Studio(
+            order.description, theme, order.size, False, order.page_height, **look
+        )
+    studios[key].show(order.description)
     written = BytesIO()
+    picture = Image.fromarray(studios[key].draw(order.camera or studios[key].camera()))
     picture.save(written, "png", compress_level=1)
     return written.getvalue()

@@ -1,4 +1,4 @@
-"""A description drawn by PyVista: the one scene that pictures are made from."""
+"""Drawing of a description by PyVista."""
 
 import os
 import sys
@@ -22,7 +22,7 @@ from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
 from .description import Actor, Description
 from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .polydata import lookup_table
+from .plotters import lookup_table
 from .strokes import depths, see_strokes, shade_strokes, stroke_data
 from .textured import cut_out, pieces, texture
 from .vtk_internals import add_overlay, clip, polygon_actor
@@ -140,7 +140,7 @@ class Scene:
         return self._overlay if self._overlay.HasViewProp(actor) else self.plotter.renderer
 
     def _parts(self, actor: Actor, description: Description) -> Iterator[pv.Actor]:
-        """Return what VTK draws for an actor: in materials, a part for each image."""
+        """Yield the VTK actors of an actor: with materials, one for each image."""
         if actor.kind != "surface" and self._layered:
             drawn = polygon_actor(_dataset(actor, description))
             haze = tuple((np.add(self.theme.top, self.theme.bottom) / 2).tolist())
@@ -261,7 +261,7 @@ def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | Non
         mapper.SelectColorArray("values")
         mapper.SetInterpolateScalarsBeforeMapping(True)
         table = colormap(actor.colormap)
-        if actor.film and front is not None:
+        if actor.follows_wavefront and front is not None:
             table = behind_front(table, actor.limits, front)
         mapper.lookup_table = lookup_table(table)
         mapper.scalar_range = actor.limits

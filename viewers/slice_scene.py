@@ -1,12 +1,14 @@
 """One slice of the lattice with its rays (paper section 3.1, figure "ray segments")."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.graph import Lattice
 from cutcell.rig import Rig
 
-from .character import to_scene
+from .character import cell_length, lattice_to_scene
 from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
 from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
@@ -47,11 +49,7 @@ def slice_scene(
     legend : Legend
     """
     lattice = rays.lattice
-    cell = lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
-
-    def placed(points: NDArray) -> NDArray[np.float64]:
-        return to_scene(rig, lattice.to_file(points))
-
+    cell, placed = cell_length(rig, lattice), partial(lattice_to_scene, rig, lattice)
     margin = MARGIN / lattice.resolution
     box = lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
     low, high, winding, is_inside = _joined(rays, box)
@@ -126,7 +124,7 @@ def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[
     place[normal] = (index + 0.5) / resolution
     direction = sign * rig.world[:3, normal]
     direction = direction / np.linalg.norm(direction)
-    origin = to_scene(rig, lattice.to_file(place))
+    origin = lattice_to_scene(rig, lattice, place)
     return normal, index, Cut(tuple(origin.tolist()), tuple(direction.tolist()))
 
 
@@ -140,7 +138,7 @@ def file_axis(rig: Rig, axis: str) -> tuple[int, int]:
 def _joined(
     rays: RaySlice, box: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Join neighbouring segments that are alike, and leave out what is far from the body."""
+    """Join similar neighbouring segments, and drop segments far from the body."""
     middle = (rays.low + rays.high) / 2
     near = ((middle >= box[0]) & (middle <= box[1])).all(axis=1)
     low, high, winding, is_inside = (

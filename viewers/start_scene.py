@@ -1,12 +1,14 @@
 """Sources of distances (paper section 3.2, figure "distance initialisation")."""
 
+from functools import partial
+
 import numpy as np
 
 from cutcell.geodesics import BoneDistances, bone_samples
 from cutcell.geometry.segments import closest_on_segment
 from cutcell.rig import Rig
 
-from .character import diagonal, to_scene
+from .character import diagonal, lattice_to_scene
 from .description import Actor
 from .marks import beads, rods
 from .palette import SOURCE, Theme
@@ -31,11 +33,7 @@ def start_scene(rig: Rig, distances: BoneDistances, joint: int, theme: Theme) ->
         "samples" on the bone, "sources" among the graph's nodes, "first distances".
     """
     graph, bones, sources = distances.graph, distances.bones, distances.sources
-    size = diagonal(rig)
-
-    def placed(points: np.ndarray) -> np.ndarray:
-        return to_scene(rig, graph.lattice.to_file(points))
-
+    size, placed = diagonal(rig), partial(lattice_to_scene, rig, graph.lattice)
     points, bone = bone_samples(graph, bones)
     samples = points[bones.joint[bone] == joint]
     of_joint = bones.joint[sources.bone] == joint

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from .description import Description, in_view
 from .lettering import free_corner, legend_card, put_card, write_captions
 from .palette import LIGHT, Theme, to_bytes
 from .scene import Scene
-from .tiles import shape_of, tiles
+from .tiles import Tile, shape_of, tiles
 
 SAME = 4
 """Largest difference, of 255, from the background of a pixel that shows nothing."""
@@ -34,6 +35,10 @@ class Studio(AbstractContextManager["Studio"]):
         Height of a page's canvas that looks the same, in its pixels.
     transparent : bool
         Whether pictures have a fourth channel instead of a background.
+    tiles : tuple of Tile, optional
+        The rectangle of each view.
+    fine : bool
+        See `Scene`.
 
     Attributes
     ----------
@@ -49,10 +54,13 @@ class Studio(AbstractContextManager["Studio"]):
         legend: bool = True,
         page_height: float = PAGE_HEIGHT,
         transparent: bool = False,
+        tiles: tuple[Tile, ...] = (),
+        fine: bool = False,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
         self.is_steady = False
         self._transparent, self._ratio = transparent, size[1] / page_height
+        self._given_tiles, self._fine = tiles, fine
         self._scenes: list[Scene] = []
         self._description = description
         self._legend_place: tuple[int, int] | None = None
@@ -63,9 +71,9 @@ class Studio(AbstractContextManager["Studio"]):
         for scene in self._scenes:
             scene.close()
         count, shape = max(len(self._description.views), 1), shape_of(self._description.bounds)
-        self._tiles = tiles(count, size, shape)
+        self._tiles = list(self._given_tiles) or tiles(count, size, shape)
         self._scenes = [
-            Scene(self.theme, tile[2:], pixel_ratio=self._ratio) for tile in self._tiles
+            Scene(self.theme, tile[2:], self._fine, self._ratio) for tile in self._tiles
         ]
         self.show(self._description)
 
@@ -142,3 +150,18 @@ def _ground(theme: Theme, height: int) -> NDArray[np.float32]:
     part = (np.arange(height, dtype=np.float32) + 0.5)[:, None, None] / height
     top, bottom = (255 * np.array(color, np.float32) for color in (theme.top, theme.bottom))
     return top + part * (bottom - top)
+
+
+def points_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
+    """Return the points of all actors but overlays in some poses, shape (n, 3)."""
+    whole = [actor for actor in description.actors.values() if not actor.overlay]
+    points = [a.points_in(pose, description.blending) for a in whole for pose in poses]
+    return np.concatenate([np.empty((0, 3)), *points])
+
+
+def box_of(description: Description, poses: list[Any]) -> NDArray[np.float64]:
+    """Return the lowest and highest corner of some poses, shape (2, 3)."""
+    points = points_of(description, poses)
+    if not len(points):
+        return description.bounds
+    return np.stack([points.min(axis=0), points.max(axis=0)])

@@ -59,7 +59,7 @@ def pieces(
 
 
 def cut_out(drawn: pv.Actor, wrap: int) -> None:
-    """Draw a piece opaquely, without what its image leaves out."""
+    """Draw a piece opaquely, without the transparent pixels of its image."""
     drawn.ForceOpaqueOn()
     code = DITHERED if wrap >= BLENDED else CUT_OUT
     replace_in_shader(drawn, "Fragment", ALPHA, code, early=False)

@@ -48,7 +48,7 @@ def set_uniforms(drawn: Any, stage: Stage, **values: float | tuple[float, ...]) 
 
 
 def add_attribute(drawn: Any, name: str) -> None:
-    """Hand an array of the points to the vertex shader, as the attribute NAMEMC."""
+    """Pass an array of the points to the vertex shader, as the attribute NAMEMC."""
     drawn.GetMapper().MapDataArrayToVertexAttribute(f"{name}MC", name, 0, -1)
 
 

@@ -20,7 +20,7 @@ DECADES = 3
 """Powers of ten that the logarithmic scale shows."""
 FAINTEST = 0.4
 """Place in the colour map of a weight at the limit, where all above it is to be seen."""
-MOST = "Dominant bone"
+DOMINANT = "Dominant bone"
 
 
 def weights_scene(
@@ -92,7 +92,7 @@ def weight_colors(
         style = {"scalars": scalars, "colormap": "weight", "reading": reading}
         return style, Legend(title, "weight", low, "1")
     colors = to_bytes(np.clip(_mixed(rig, np.asarray(weights)), 0, 1))
-    return {"colors": colors, "reading": _strongest(rig, weights)}, Legend(MIXED)
+    return {"colors": colors, "reading": _dominant(rig, weights)}, Legend(MIXED)
 
 
 def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
@@ -112,11 +112,11 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
 
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by its dominant joint; see `weight_colors`."""
-    reading = _strongest(rig, weights)
+    reading = _dominant(rig, weights)
     colors = to_bytes(colors_of(rig))
     assert reading.values is not None
     style = {"colors": colors[reading.values.astype(int)], "reading": reading}
-    return style, Legend(MOST)
+    return style, Legend(DOMINANT)
 
 
 def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
@@ -159,12 +159,12 @@ def bone_difference_colors(
     `names` are those of the two matrices; see `weight_colors`.
     """
     name = short_names(rig.skeleton.names)[joint]
-    more = np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]
+    change = (np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]).astype(np.float32)
     title = f"Weight of {name}: {names[0]} minus {names[1]}"
     legend = Legend(title, "difference", "\N{MINUS SIGN}1", "+1")
-    style = {"scalars": more.astype(np.float32), "colormap": "difference", "limits": (-1.0, 1.0)}
+    style = {"scalars": change, "colormap": "difference", "limits": (-1.0, 1.0)}
     return {**style, "reading": Reading(f"{name} ")}, legend
 
 
-def _strongest(rig: Rig, weights: ArrayLike) -> Reading:
+def _dominant(rig: Rig, weights: ArrayLike) -> Reading:
     return Reading("", np.asarray(weights).argmax(axis=1), rig.skeleton.names)

@@ -86,7 +86,7 @@ def in_process(
     FileError
         The process came to an end by itself, or took longer than `limit`.
     Exception
-        Whatever `work` or `wanted` raises.
+        Whatever `work` or `check` raises.
     """
     latest = time.monotonic() + limit
     receiver, sender = _CONTEXT.Pipe(duplex=False)

@@ -10,15 +10,10 @@ import param
 from cutcell.diagnosis import TITLES
 from cutcell_viewers.camera import Camera
 
+from .common import MOMENT
 from .document import Repair
 from .side_by_side import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, settled_of, standard
 from .state import State
-
-OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip",
-                 "busy", "stage", "fraction", "message", "step", "staged", "vertex", "node", "part",
-                 "layer", "animating", "joint_handle", "measuring_errors",
-                 "sweeping"})  # fmt: skip
-"""Parameters of one person or moment, or with an entry of their own in the address; tools, too."""
 
 NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled")
 """Choices that only apply to the open character."""
@@ -33,10 +28,14 @@ CAMERA = 6
 
 
 def simple(state: State) -> dict[str, param.Parameter]:
-    """Return the parameters that are plain choices: switches, numbers, one of a few."""
+    """Return the parameters that are plain choices: switches, numbers, one of a few.
+
+    Those of `MOMENT` and of tools are none.
+    """
     kinds = (param.Boolean, param.Selector, param.Number)
     allowed = state.param.objects("existing")
-    return {n: p for n, p in allowed.items() if n not in OWN | state.tools and isinstance(p, kinds)}
+    plain = {n: p for n, p in allowed.items() if p.precedence != MOMENT and isinstance(p, kinds)}
+    return {name: one for name, one in plain.items() if name not in state.tools}
 
 
 def snapshot(state: State) -> dict[str, Any]:

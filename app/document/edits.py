@@ -14,6 +14,7 @@ from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
+from .common import MOMENT
 from .document import Repair, applied
 
 
@@ -25,9 +26,11 @@ class Choices(param.Parameterized):
 
     edits: Any = param.Parameter(Edits(), doc="A cutcell.Edits.")
     opening: Any = param.Parameter(Edits(), doc="The edits that the character was opened with.")
-    layer = param.Integer(None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.")
+    layer = param.Integer(
+        None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.", precedence=MOMENT
+    )
     own: Any = param.Parameter(None, doc="The character without edits: a cutcell.Rig.")
-    joint_handle = param.Boolean(False, label="Show move handle")
+    joint_handle = param.Boolean(False, label="Show move handle", precedence=MOMENT)
     mirrored = param.Boolean(True, label="Mirror")
     moved: Any = param.Parameter(
         None, doc="The rig and its edits while joints are dragged; else None."
@@ -36,7 +39,10 @@ class Choices(param.Parameterized):
     preview: Any = param.Parameter(None, doc="About the binding of the moved rig, or None.")
     exact_preview: Any = param.Parameter(None, doc="The binding of the moved rig, or None so far.")
     part = param.Integer(
-        None, allow_None=True, doc="A vertex of the connected component that is looked at."
+        None,
+        allow_None=True,
+        doc="A vertex of the connected component that is looked at.",
+        precedence=MOMENT,
     )
 
     @property

@@ -3,26 +3,17 @@
 from cutcell_viewers.camera import Camera, framing
 
 from ..messages.received import Pick, PickNode, PickVertex
-from .framing import bounds_of, camera_part, theme_of, theme_part
+from .framing import bounds_of, camera_part
 from .session import Session
-from .state import UNSEEN
 
 
 def watch(session: Session) -> None:
-    """Connect the view to the state, and the state to picks in the view."""
-    state, view = session.state, session.view
-    hidden = UNSEEN | {name for name in state.tools if name.startswith("brush_")}
-    watched = [name for name in state.param if name not in hidden - {"brush_selection"}]
-    state.param.watch(lambda *events: show(session), watched)
-    state.param.watch(lambda *events: show_theme(session), "dark")
+    """Connect the state to picks in the view."""
+    view = session.view
     view.listen(Pick, lambda message: pick(session, message.joint))
     view.listen(PickVertex, lambda message: pick_vertex(session, message.vertex, message.view))
     view.listen(PickNode, lambda message: pick_node(session, message.node))
-    state.param.watch(
-        lambda *events: pick_node(session, None),
-        ["rig", "binding", "built_graph", "easy_graph", "graph_resolution"],
-    )
-    show_theme(session)
+    session.engine.when(lambda state: state.shown_graph, lambda graph: pick_node(session, None))
 
 
 def pick_node(session: Session, node: int | None) -> None:
@@ -59,19 +50,3 @@ def set_camera(session: Session, camera: Camera | None) -> None:
     view.camera, view.at_home = camera or home, camera is None
     now = None if camera is None else camera_part(camera)
     view.send(camera={**camera_part(home), "now": now})
-
-
-def show(session: Session) -> None:
-    """Show the scene of the state; that of a large character, when it is described."""
-    state, view, memo = session.state, session.view, session.memo
-    if state.quick:
-        session.work.cancel("scene")
-        view.present(session.resolve(state, memo))
-    else:
-        now = state.snapshot()
-        session.work.newest("scene", lambda progress: session.resolve(now, memo), view.present)
-
-
-def show_theme(session: Session) -> None:
-    """Show the colours of the theme that is chosen."""
-    session.view.send(theme=theme_part(theme_of(session.state)))

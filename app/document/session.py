@@ -25,9 +25,6 @@ from .state import State
 
 logger = logging.getLogger("cutcell.app")
 
-Resolve = Callable[[State, Memo], Description]
-"""Returns the scene of a state; a memo speeds up a series of calls."""
-
 WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
 
@@ -49,8 +46,8 @@ class View(Protocol):
     def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
 
-    def present(self, description: Description) -> None:
-        """Show a scene."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a scene, together with parts of the view that belong to it."""
 
     def send(self, **parts: Unpack[ToBrowser]) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
@@ -74,8 +71,6 @@ class Session:
     schedule : callable
         See `derive.jobs.Schedule`.
     state : State
-    resolve : callable
-        Returns the scene of a state; see `features.scenes.resolve`.
 
     Attributes
     ----------
@@ -85,7 +80,6 @@ class Session:
         What a person has started: openings, repairs, templates.
     engine : Engine
         It keeps the results up to the state.
-    memo : Memo
     history : History
     uploads : PageUploads
     source : str
@@ -104,14 +98,12 @@ class Session:
         Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
-    def __init__(self, view: View, schedule: Schedule, state: State, resolve: Resolve) -> None:
+    def __init__(self, view: View, schedule: Schedule, state: State) -> None:
         self.state = state
         self.view = view
-        self.resolve = resolve
         self.work = Work(schedule, self.fail, self.show_progress)
         self.tasks = Tasks(self.work, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)
-        self.memo = Memo()
         self.history = History()
         self.uploads = PageUploads(UPLOADS)
         self.source = ""
@@ -160,6 +152,11 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
+
+    @property
+    def memo(self) -> Memo:
+        """Costly steps of what is shown of the state."""
+        return self.state.memo
 
     @property
     def folder(self) -> Path:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.description import Actor, Description, Legend, with_colormap
 from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
 from cutcell_viewers.skin import Skin
 
@@ -31,6 +31,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     panel = state.panel if state.is_panel_usable else "graph"
     whole = SCENES[panel](state, memo or Memo())
     blending: Any = state.blending if PANELS[panel].poses else "linear"
+    whole = with_colormap(whole, state.colormap)
     whole = replace(whole, actors={**whole.actors, **state.actors}, blending=blending)
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
         return whole

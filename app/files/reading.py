@@ -55,7 +55,7 @@ def frozen(rig: Rig) -> Rig:
 
 
 def main_file(paths: list[Path]) -> Path:
-    """Return the one character of a dropped group; raise an error for none or several."""
+    """Return the only character of a dropped group; raise an error for none or several."""
     characters = [path for path in paths if path.suffix.lower() not in COMPANIONS]
     names = ", ".join(path.name for path in paths)
     if not characters:

@@ -1,8 +1,9 @@
-"""Weights and distances as plain numbers, for spreadsheets and scripts."""
+"""Weights, distances and graphs as plain numbers, for spreadsheets and scripts."""
 
 import csv
 import json
-from collections.abc import Mapping
+import zipfile
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -18,6 +19,7 @@ from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
 from cutcell.runtime.display import printable
 from cutcell.runtime.writing import check_place, write_all
+from cutcell_viewers.graph_scene import KINDS
 
 FORMULA = tuple("=+-@\t\r＝＋－＠")
 """Prefixes that start a formula in a spreadsheet."""
@@ -95,17 +97,51 @@ def _packed_npz(rig: Rig, arrays: dict[str, NDArray], settings: Mapping[str, Any
 
 def _packed_csv(rig: Rig, arrays: dict[str, NDArray], settings: Mapping[str, Any]) -> bytes:
     ((what, table),) = arrays.items()
-    packed = StringIO(newline="")
-    writer = csv.writer(packed)
     lines = {"table": what, **settings} if settings else {}
-    packed.writelines(f"# {name}: {value}\r\n" for name, value in lines.items())
-    writer.writerow(["vertex", *map(spreadsheet_cell, rig.skeleton.names)])
-    for vertex, row in enumerate(table.astype(np.float64).tolist()):
-        writer.writerow([vertex, *(f"{value:.{DIGITS}g}" for value in row)])
-    return packed.getvalue().encode()
+    rows = (
+        [vertex, *(f"{value:.{DIGITS}g}" for value in row)]
+        for vertex, row in enumerate(table.astype(np.float64).tolist())
+    )
+    about = "".join(f"# {name}: {value}\r\n" for name, value in lines.items())
+    text = _csv(["vertex", *map(spreadsheet_cell, rig.skeleton.names)], rows, "\r\n")
+    return (about + text).encode()
+
+
+def _csv(head: Iterable[object], rows: Iterable[Iterable[object]], end: str = "\n") -> str:
+    text = StringIO(newline="")
+    csv.writer(text, lineterminator=end).writerows([head, *rows])
+    return text.getvalue()
 
 
 def spreadsheet_cell(name: str) -> str:
     """Return a name as a cell; formulas get an apostrophe (OWASP, "CSV Injection")."""
     is_formula = name.lstrip().startswith(FORMULA) or name.startswith(FORMULA)
     return f"'{printable(name)}" if is_formula else printable(name)
+
+
+def save_graph(path: Path, graph: CutCellGraph) -> None:
+    """Write a graph's nodes and edges; positions and lengths are in the file's units.
+
+    A ".zip" contains "nodes.csv", "edges.csv" and "settings.json"; else the path ends in ".npz".
+    """
+    kinds = np.array(KINDS)
+    places = graph.lattice.to_file(graph.nodes)
+    lengths = graph.lengths * graph.lattice.size
+    settings = json.dumps(settings_of(graph))
+    if path.suffix == ".npz":
+        np.savez_compressed(
+            path, nodes=places, node_kind=graph.node_kind, triangle=graph.triangle,
+            edges=graph.edges, edge_kind=graph.edge_kind, lengths=lengths,
+            vertex_node=graph.vertex_node, kinds=kinds,
+            settings=np.array(settings),
+        )  # fmt: skip
+        return
+    nodes = zip(
+        range(len(places)), kinds[graph.node_kind], *places.T.tolist(), graph.triangle.tolist(),
+        strict=True,
+    )  # fmt: skip
+    edges = zip(*graph.edges.T.tolist(), kinds[graph.edge_kind], lengths.tolist(), strict=True)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("nodes.csv", _csv(("node", "kind", "x", "y", "z", "triangle"), nodes))
+        archive.writestr("edges.csv", _csv(("from", "to", "kind", "length"), edges))
+        archive.writestr("settings.json", settings)

@@ -1,4 +1,4 @@
-from .address import Address, read_address
+from .address import choices_at, read_address
 from .choices import RENDERED, Choices, state_of
 from .names import bone_index, clip_named
 from .options import read_choices, read_settings, read_size
@@ -8,10 +8,10 @@ from .scene import describe, describe_sweep, textures_for
 __all__ = [
     "RENDERED",
     "VIEWS",
-    "Address",
     "Choices",
     "Picture",
     "bone_index",
+    "choices_at",
     "clip_named",
     "describe",
     "describe_sweep",

@@ -1,16 +1,21 @@
 """Addresses of the page, as choices of a picture."""
 
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
 from typing import Any
 from urllib.parse import urlsplit
 
+from cutcell.cli.options import chosen_method
 from cutcell.errors import ParameterError
 from cutcell_viewers.camera import Camera
 
 from ..document.address import camera_of, from_query, numbers_of, simple, with_scene
 from ..document.method import GRAPH, WEIGHTS, effective
 from ..features.state import PageState
+from .choices import Choices
 
+METHOD = (*GRAPH, *WEIGHTS)
+MOMENT = ("bone", "methods", "vertex", "turns", "clip", "minus")
+"""Entries of the address that are no plain choices of the page."""
 REPLACED = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
     "skeleton": ("skeleton",), "bone": ("weights_shown", "compare_field"),
@@ -18,40 +23,12 @@ REPLACED = {
 """Choices of the page that options of the command replace."""
 
 
-@dataclass(frozen=True)
-class Address:
-    """Content of an address.
+def read_address(text: str) -> tuple[dict[str, Any], Camera | None]:
+    """Return the choices of a page's address, or of its part after the question mark.
 
-    Parameters
-    ----------
-    choices : dict
-        Fields of `Choices`: "panel", "bone" and "methods", where it has them.
-    settings : dict
-        Choices of the page, all of them, as the address says or as they are at first.
-    method : dict
-        Options of the method that are not as at first.
-    camera : Camera, optional
-    """
-
-    choices: dict[str, Any] = field(default_factory=dict)
-    settings: dict[str, Any] = field(default_factory=dict)
-    method: dict[str, Any] = field(default_factory=dict)
-    camera: Camera | None = None
-
-    def without(self, options: list[str]) -> "Address":
-        """Return an address without the entries that options of the command replace."""
-        replaced = {*options, *(name for one in options for name in REPLACED.get(one, ()))}
-
-        def rest(part: dict[str, Any]) -> dict[str, Any]:
-            return {name: value for name, value in part.items() if name not in replaced}
-
-        return Address(rest(self.choices), rest(self.settings), rest(self.method), self.camera)
-
-
-def read_address(text: str) -> Address:
-    """Return the content of a page's address, or of its part after the question mark.
-
-    The character that it names is not opened.
+    They are all choices of the page by name, as the address says or as they are at first, options
+    of the method that are not as at first, and "bone" and "methods" where it has them. The
+    character that it names is not opened.
 
     Raises
     ------
@@ -64,16 +41,37 @@ def read_address(text: str) -> Address:
     problems += [name for name in ("edits", "repairs") if name in arrival]
     if problems:
         raise ParameterError(f"the address has entries that cannot be drawn: {', '.join(problems)}")
-    options = {name: page.pop(name) for name in (*GRAPH, *WEIGHTS) if name in page}
-    plain = {n: p.default for n, p in simple(state).items() if n not in (*GRAPH, *WEIGHTS, "panel")}
-    choices = {"panel": page.pop("panel")} if "panel" in page else {}
-    choices |= {name: arrival[name] for name in ("bone", "methods") if name in arrival}
-    moment: dict[str, Any] = {
-        n: arrival[n] for n in ("vertex", "turns", "clip", "minus") if n in arrival
-    }
-    camera = camera_of(arrival["camera"]) if "camera" in arrival else None
+    options = {name: page.pop(name) for name in METHOD if name in page}
+    first = {n: p.default for n, p in simple(state).items() if n not in (*METHOD, "panel")}
     method = effective({"falloff": state.falloff, **options})
-    return Address(choices, {**plain, **page, **moment}, method, camera)
+    moment = {name: arrival[name] for name in MOMENT if name in arrival}
+    camera = camera_of(arrival["camera"]) if "camera" in arrival else None
+    return {**first, **page, **moment, **method}, camera
+
+
+def choices_at(
+    address: Mapping[str, Any], explicit: Collection[str], fields: Mapping[str, Any],
+    settings: Mapping[str, Any], options: Mapping[str, Any],
+) -> Choices:  # fmt: skip
+    """Return the choices of an address and of the command's options, of which explicit ones win.
+
+    Parameters
+    ----------
+    address : mapping
+        As `read_address` returns it.
+    explicit : collection of str
+        Options that a person has given.
+    fields, settings : mapping
+        Fields of `Choices`, and choices of the page, by these options or their defaults.
+    options : mapping
+        Options of the method.
+    """
+    replaced = {*explicit, *(name for one in explicit for name in REPLACED.get(one, ()))}
+    rest = {name: value for name, value in address.items() if name not in replaced}
+    own = {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
+    method = chosen_method({**options, **{n: rest.pop(n) for n in METHOD if n in rest}})
+    named: dict[str, Any] = {**fields, **own}
+    return Choices(**named, settings={**rest, **settings}, method=method)
 
 
 def read_camera(text: str) -> Camera:

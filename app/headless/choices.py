@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import param
+
 from cutcell import ANIMATION, Method
-from cutcell.checks import check_choice
+from cutcell.checks import check_choice, check_number
 from cutcell.errors import ParameterError
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
@@ -19,7 +21,6 @@ from ..features.state import PANELS, PageState
 from ..features.weights.choices import SHOWN
 from ..shell.session.sweep import SWEEPS, has_cut
 from .names import bone_index, clip_index
-from .options import apply
 
 RENDERED = tuple(name for name, panel in PANELS.items() if panel.is_rendered)
 """The panels whose scenes can be rendered."""
@@ -79,7 +80,7 @@ class Choices:
 
 
 def state_of(rig: Rig, choices: Choices) -> State:
-    """Return the page's state with what is chosen, of which nothing is computed yet.
+    """Return the page's state for some choices, without any result yet.
 
     Raises
     ------
@@ -116,12 +117,33 @@ def state_of(rig: Rig, choices: Choices) -> State:
         state.turns = {state.joint: tuple(degrees * float(i == k) for i in range(3))}
     if clip is not None:
         state.param.update(clip=clip_index(rig, clip), moving=True)
-    apply(state, choices.settings)
+    _apply(state, choices.settings)
     if choices.sweep is not None:
         _check_sweep(state, choices)
     if state.pose_colors == "materials" and not has_materials(rig):
         raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     return state
+
+
+def _apply(state: State, settings: Mapping[str, Any]) -> None:
+    """Set choices of the page; raise a `ParameterError` for those that it does not have."""
+    for name, value in settings.items():
+        if name not in state.param or name == "name":
+            raise ParameterError(f'the page has no choice "{name}"')
+        parameter = state.param[name]
+        if isinstance(parameter, param.Selector):
+            check_choice(name, value, parameter.objects)
+        elif isinstance(parameter, param.Number):
+            low, high = parameter.bounds or (None, None)
+            if low is not None and high is not None:
+                check_number(name, value, low, high)
+        try:
+            setattr(state, name, value)
+        except ValueError:
+            raise ParameterError(f'{name} cannot be "{value}"') from None
+    count = 0 if state.rig is None else len(state.rig.mesh.vertices)
+    if state.vertex is not None and not 0 <= state.vertex < count:
+        raise ParameterError(f"vertex must be one of 0 to {count - 1}, not {state.vertex}")
 
 
 def _check_sweep(state: State, choices: Choices) -> None:

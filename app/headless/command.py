@@ -21,7 +21,7 @@ from cutcell.cli.options import (
 from cutcell.errors import MissingLibraryError, ParameterError
 from cutcell_lab.cli.networks import Networks, offer_networks
 
-from .flags import CHOICES, FIGURE, PICTURE, SETTINGS
+from .options import CHOICES, FIGURE, PICTURE, SETTINGS
 
 PICTURE_SIZE = (1600, 1200)
 FILM_SIZE = (960, 720)
@@ -47,7 +47,7 @@ EPILOG = """Examples:
 - `cutcell render --lesson lesson.html`"""
 LESSON = "Lesson"
 """Heading of the options for it."""
-INTERACTIVE = {"rig", "out", "panel", "bone", "skeleton_file", "quiet", *METHOD_OPTIONS}
+INTERACTIVE = {"rig", "out", "panel", "bone", "colormap", "skeleton_file", "quiet", *METHOD_OPTIONS}
 """Parameters of the command that apply to an interactive page."""
 
 
@@ -100,8 +100,8 @@ def render(
 
     Weights are computed first; nothing of the character's file is changed.
     """
-    scenes, film, process = required(
-        "pictures need", "cutcell_app.headless", "cutcell_viewers.film", "cutcell_viewers.process"
+    scenes, orders, process = required(
+        "pictures need", "cutcell_app.headless", "cutcell_viewers.order", "cutcell_viewers.process"
     )
     explicit = [name for name in context.params if _is_given(context, name)]
     if lesson is not None or lesson_from is not None:
@@ -114,15 +114,15 @@ def render(
         )
     if out.suffix.lower() == ".html":
         _check_interactive(explicit)
-        _write_page(rig, out, choices, options, skeleton_file, quiet)
+        _write_page(rig, out, {**choices, **settings}, options, skeleton_file, quiet)
         return
     swept = choices["sweep"] is not None
     is_clip = choices["clip"] is not None and choices["time"] is None
     moves = picture["turntable"] or swept or is_clip
     addresses, captions = figure["address"] or [], figure["caption"]
-    pages = [scenes.read_address(text) for text in addresses] or [scenes.Address()]
+    pages = [scenes.read_address(text) for text in addresses] or [({}, None)]
     is_figure = len(pages) > 1 or captions is not None
-    kind = film.check_picture_file(out, moves, len(pages) if is_figure else 0)
+    kind = orders.check_picture_file(out, moves, len(pages) if is_figure else 0)
     size = scenes.read_size(picture["size"]) or (FILM_SIZE if moves else PICTURE_SIZE)
     drawn = scenes.Picture(**{**picture, "size": size})
     drawn.check(kind)
@@ -132,28 +132,21 @@ def render(
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
     fields, shown = scenes.read_choices(**choices), scenes.read_settings(**settings)
-    chosen = []
-    for page in pages:
-        rest = page.without(explicit)
-        one = scenes.Choices(
-            **{**fields, **rest.choices},
-            settings={**rest.settings, **shown},
-            method=chosen_method({**options, **rest.method}),
-        )
-        with naming(rig):
+    chosen = [scenes.choices_at(address, explicit, fields, shown, options) for address, _ in pages]
+    with naming(rig):
+        for one in chosen:
             scenes.state_of(loaded, one)  # reports a wrong name before anything long begins
-        chosen.append(one)
     with progress_bars(quiet) as progress:
-        rate = film.FRAMES[kind] if swept else None
+        rate = orders.FRAMES[kind] if swept else None
         frames, warnings = _describe(loaded, chosen, "resolution" in explicit, rate, progress)
-        eye = next((page.camera for page in pages if page.camera), None)
+        eye = next((camera for _, camera in pages if camera), None)
         order = scenes.order(loaded, frames[-1], chosen[0], drawn, eye)
         if swept:
             order = replace(order, scenes=frames)
         elif is_figure:
             order = replace(order, panels=frames, captions=tuple(captions or ()))
         process.draw_isolated(order, out, progress)
-    is_print = is_figure or kind in film.FIGURES[:2]
+    is_print = is_figure or kind in orders.FIGURES[:2]
     about = "" if is_print else f"{size[0]} x {size[1]} pixels, "
     _report(out, about, [*loaded.warnings, *warnings], quiet)
 
@@ -201,19 +194,23 @@ def _write_page(
     from cutcell.io import load
     from cutcell.io.files import naming
     from cutcell.runtime.writing import check_place, write_all
+    from cutcell_viewers.palette import COLORMAPS
 
     from . import bone_index
     from .interactive import VIEWS, interactive_page
 
     check_place(out)
     view = check_choice("panel", choices["panel"] or "weights", VIEWS)
+    colormap = check_choice("colormap", choices["colormap"] or "default", COLORMAPS)
     method, loaded = chosen_method(options), load(rig, skeleton=skeleton)
     with naming(rig):
         loaded.require_joints()
         joint = None if choices["bone"] is None else bone_index(loaded, choices["bone"])
     with progress_bars(quiet) as progress:
         binding = bind(loaded, options["resolution"], method=method, progress=progress)
-        page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
+        page = interactive_page(
+            loaded, binding, joint=joint, view=view, colormap=colormap, progress=progress
+        )
         write_all({out: page.encode()})
     _report(out, "an interactive page, ", [*loaded.warnings, *binding.warnings], quiet)
 

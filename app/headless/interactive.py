@@ -31,7 +31,7 @@ from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
-from cutcell_viewers.palette import THEMES, to_hex
+from cutcell_viewers.palette import COLORMAPS, THEMES, to_hex
 from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import MIXED
 
@@ -65,6 +65,7 @@ def interactive_page(
     *,
     joint: int | None = None,
     view: str = "weights",
+    colormap: str = "default",
     title: str = "",
     caption: str = "",
     progress: Progress = silent,
@@ -80,6 +81,8 @@ def interactive_page(
         The joint that is chosen at first; the number of joints means all of them.
     view : {"weights", "distance", "graph"}
         The view that is shown at first.
+    colormap : str
+        Of weights, distances and depths: one of `palette.COLORMAPS`.
     title : str
         Of the page; the rig's name when left out.
     caption : str
@@ -90,15 +93,16 @@ def interactive_page(
     Raises
     ------
     ParameterError
-        No such view.
+        No such view or colour map.
     SkeletonError
         A mesh without a skeleton.
     """
     check_choice("view", view, VIEWS)
+    check_choice("colormap", colormap, COLORMAPS)
     rig.require_joints()
     binding = bind(rig, progress=progress) if binding is None else binding
     packed = Packed()
-    scenes = packed.plain(_record(rig, binding, progress))
+    scenes = packed.plain(_record(rig, binding, colormap, progress))
     scenes |= {"view": view, "joint": first_joint(rig) if joint is None else joint}
     scenes["settings"] = settings_of(binding)
     content = f"<aside>{html.escape(caption)}</aside>\n<p>Loading the character …</p>"
@@ -109,7 +113,7 @@ def interactive_page(
 def page_in_one_file(
     script: str, title: str, content: str, packed: Packed, scenes: dict[str, Any]
 ) -> str:
-    """Return a page without a server: its content, scripts, vtk.js and what was recorded."""
+    """Return a page without a server: its content, scripts, vtk.js and recorded scenes."""
     template = Template((FOLDER / "one_file/page.html").read_text(encoding="utf-8"))
     return template.substitute(
         script=script,
@@ -123,10 +127,11 @@ def page_in_one_file(
     )
 
 
-def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
+def _record(rig: Rig, binding: Binding, colormap: str, progress: Progress) -> dict[str, Any]:
     """Return all messages of the page: of each joint, view and clip."""
     complete = binding.distances.of_all_joints(progress)
     state, memo = PageState(rig=rig, binding=replace(binding, distances=complete)), Memo()
+    state.colormap = colormap
     limit = MAX_CLIP_NUMBERS // max(len(rig.clips), 1)
     clips = [(shown_name(clip.name), clip_part(state, clip, limit)) for clip in rig.clips]
     return {

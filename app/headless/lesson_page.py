@@ -191,7 +191,7 @@ class Recording:
         return colors
 
     def _answers(self, step: Step) -> dict[str, Any]:
-        """Return what answers in the picture need: the joint of each vertex, and what is right."""
+        """Return the data for answers in the picture: each vertex's joint, and the solution."""
         state = self.recorder.session.state
         part: dict[str, Any] = {"names": clickable(state)}
         if state.weights is not None:
@@ -208,7 +208,7 @@ class Recording:
         return part
 
     def _moved(self, step: Step, weights: Any = None) -> NDArray[np.uint8]:
-        """Return what is right to paint, by some weights, shape (n,)."""
+        """Return the vertices to paint, by some weights, shape (n,)."""
         moves = branch_weights(self.recorder.session.state, step.answer.joint, weights) > 0.5
         return moves.astype(np.uint8)
 

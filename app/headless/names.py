@@ -1,4 +1,4 @@
-"""Bones and clips by their names, as people write them."""
+"""Look-up of bones and clips by approximate names."""
 
 from difflib import get_close_matches
 

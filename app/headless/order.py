@@ -7,8 +7,8 @@ from cutcell.errors import ParameterError
 from cutcell.rig import Rig
 from cutcell_viewers.camera import FRONT, Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.film import Order, ground
 from cutcell_viewers.finding_scene import camera_on_marks
+from cutcell_viewers.order import Order, ground
 from cutcell_viewers.pose_scene import clip_in_scene
 
 from ..document.framing import camera_on_bone

@@ -20,7 +20,7 @@ class Packed:
         self._places: dict[tuple[str, bytes], int] = {}
 
     def plain(self, value: Any, name: str = "") -> Any:
-        """Return a message as JSON can hold it.
+        """Return a message as JSON values.
 
         An array becomes {"$": [type, first byte, length, unit]}; its numbers are multiples of the
         unit.

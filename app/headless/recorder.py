@@ -53,7 +53,7 @@ class Recorder:
         return description
 
     def message(self) -> dict[str, Any]:
-        """Return what shows the view as it is in an empty one."""
+        """Return the message that shows the current view in an empty one."""
         self.rest()
         sent = self._view._parts
         parts = {name: sent[name] for name in PARTS if sent.get(name) is not None}

@@ -9,6 +9,7 @@ from cutcell_viewers.graph_scene import box_across
 
 from ..document.framing import bounds_of
 from ..document.session import Session
+from ..document.state import State
 from ..messages.received import MoveCut
 from ..messages.sent import Box
 from .character import cut_of
@@ -19,9 +20,8 @@ def watch(session: Session) -> None:
     session.view.listen(MoveCut, lambda message: put(session, message.origin, message.normal))
 
 
-def plane_part(session: Session) -> Box | None:
+def plane_part(state: State) -> Box | None:
     """Return the box of the plane that can be dragged, or None."""
-    state = session.state
     sliced = state.panel == "graph" and state.slicing
     is_cut = state.open_panel.cuts and state.cut_across != "off"
     is_shown = state.rig is not None and is_cut and not sliced

@@ -1,4 +1,4 @@
-"""Limits of connections: those that wait for a request make way for new ones."""
+"""Limits of connections: idle ones are closed for new ones."""
 
 import sys
 from typing import Any
@@ -46,7 +46,7 @@ class LimitedServer(HTTPServer):
         self._close_surplus(list(self._clients), 1)
 
     def on_close(self, server_conn: Any) -> None:
-        """Forget a connection that has ended, or is a websocket now."""
+        """Stop counting a connection that has ended or become a websocket."""
         self._clients.pop(server_conn.stream, None)
         super().on_close(server_conn)
 

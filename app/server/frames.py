@@ -1,15 +1,17 @@
 """Origins whose pages may put this page into a frame."""
 
+import re
 from collections.abc import Iterable
-from urllib.parse import urlsplit
 
 from cutcell.checks import shown
 from cutcell.errors import ParameterError
 
-MAX_HOST = 253
-"""Characters of a host name, at most."""
-CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyz0123456789-._[]:")
-"""Characters of a host with its port; all others could end the header's directive."""
+MAX_HOST, MAX_PORT = 253, 65_535
+"""Characters of a host name, and number of a port, at most."""
+ORIGIN = re.compile(
+    r"(?P<origin>https?://(?P<host>[a-z0-9._-]+|\[[0-9a-f:.]+\])(:(?P<port>[0-9]{1,5}))?)/?"
+)
+"""Other characters of a host could end the header's directive."""
 
 
 def check_origins(origins: Iterable[str]) -> tuple[str, ...]:
@@ -22,25 +24,13 @@ def check_origins(origins: Iterable[str]) -> tuple[str, ...]:
 
 
 def _checked(origin: str) -> str:
-    try:
-        parts = urlsplit(origin.lower())
-        has_port = parts.port != 0  # ports beyond 65,535 raise
-    except ValueError:
-        has_port = False
-    if not (
-        has_port
-        and parts.scheme in ("http", "https")
-        and parts.hostname
-        and not parts.netloc.endswith(":")
-        and len(parts.netloc) <= MAX_HOST
-        and CHARACTERS.issuperset(parts.netloc)
-        and f"{parts.scheme}://{parts.netloc}" == origin.lower().removesuffix("/")
-    ):
+    match = ORIGIN.fullmatch(origin.lower())
+    if not match or len(match["host"]) > MAX_HOST or not 0 < int(match["port"] or 1) <= MAX_PORT:
         raise ParameterError(
             "--allow-frame takes an origin without a path, such as https://example.org or "
             f"http://localhost:8000, not {shown(origin)}"
         )
-    return f"{parts.scheme}://{parts.netloc}"
+    return match["origin"]
 
 
 def headers_of(origins: Iterable[str]) -> dict[str, str]:

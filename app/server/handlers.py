@@ -30,7 +30,7 @@ from tornado.routing import Rule
 from tornado.web import ErrorHandler, RequestHandler, StaticFileHandler
 
 from .frames import headers_of
-from .hosts import PLAIN, Misdirected, Strange
+from .hosts import PLAIN, MisdirectedRequest, UnknownHost
 
 MAX_SESSIONS = 64
 """Limit of open pages; each takes some 30 MB, and its character."""
@@ -88,7 +88,7 @@ def guard(
         # No file system has such a name; looking for it fails.
         (r".*%00.*", ErrorHandler, {"status_code": 404}),
         *(
-            (rf"/{address}/(.*)", Lasting, {"path": path})
+            (rf"/{address}/(.*)", ImmutableFiles, {"path": path})
             for address, path in (static or {}).items()
         ),
     ]
@@ -96,8 +96,8 @@ def guard(
     public = tornado.wildcard_router.rules
     public[:] = [rule for rule in public if rule.target in PUBLIC]
     tornado.add_handlers(".*", routes)
-    strange = Rule(Strange(hosts), Misdirected, {"hosts": hosts})
-    tornado.default_router.rules.insert(0, tornado.default_router.process_rule(strange))
+    unknown = Rule(UnknownHost(hosts), MisdirectedRequest, {"hosts": hosts})
+    tornado.default_router.rules.insert(0, tornado.default_router.process_rule(unknown))
     return text
 
 
@@ -252,7 +252,7 @@ class SocketHandler(WSHandler):
         self.finish(sentence)
 
 
-class Lasting(StaticFileHandler):
+class ImmutableFiles(StaticFileHandler):
     """Answers with files that browsers may keep, because each version has its own address."""
 
     def get_cache_time(self, *args: Any) -> int:

@@ -15,7 +15,7 @@ PLAIN = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>cutcell</
 p {{ max-width: 36em; margin: 20vh auto 0; padding: 0 24px }}</style><p>{}</p>"""
 
 
-class Strange(Matcher):
+class UnknownHost(Matcher):
     """Matches requests for unknown hosts."""
 
     def __init__(self, hosts: Collection[str]) -> None:
@@ -26,8 +26,8 @@ class Strange(Matcher):
         return None if check_allowlist(request.host.lower(), self._hosts) else {}
 
 
-class Misdirected(RequestHandler):
-    """Answers requests for another host; see `Strange`."""
+class MisdirectedRequest(RequestHandler):
+    """Answers requests for another host; see `UnknownHost`."""
 
     def initialize(self, hosts: Collection[str]) -> None:
         """Store the options of the route."""

@@ -26,8 +26,8 @@ def detach_from_panel(page: object) -> None:
                 state.param.unwatch(watcher)
 
 
-def settle() -> None:
-    """Freeze long-lived objects: collections, which stop all threads, leave them out."""
+def freeze() -> None:
+    """Exclude all current objects from garbage collections, which stop all threads."""
     gc.collect()
     gc.freeze()
 
@@ -37,13 +37,13 @@ def collect_later() -> None:
     with _LOCK:
         while _WAITING:
             _WAITING.pop().cancel()
-        timer = threading.Timer(AFTER, tidy)
+        timer = threading.Timer(AFTER, collect)
         timer.daemon = True
         _WAITING.append(timer)
         timer.start()
 
 
-def tidy() -> None:
+def collect() -> None:
     """Collect unused objects, and return their memory to the system."""
     # A page is full of cycles: its document, models, callbacks and session refer to each other.
     gc.collect()

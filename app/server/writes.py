@@ -24,6 +24,6 @@ async def write_all(doc: Document) -> None:
         document._WRITE_BLOCK.pop(doc, None)
 
 
-def leave_none_behind() -> None:
-    """Let Panel write all messages, in every document of this process."""
+def patch_panel_dispatch() -> None:
+    """Patch Panel to write all messages, in every document of this process."""
     document._dispatch_msgs = write_all

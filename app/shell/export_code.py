@@ -37,7 +37,7 @@ def _copy(session: Session, recipe: Recipe, what: str, text: str, needs_file: bo
 
 
 def recipe_of(session: Session) -> Recipe | None:
-    """Return what the weights of the page follow from; None, with a message, where it cannot be."""
+    """Return all inputs of the page's weights; None, with a message, where there are none."""
     state = session.state
     if state.rig is None or state.bare:
         state.message = ("info", "There are no weights to compute yet.")

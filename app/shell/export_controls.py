@@ -30,7 +30,7 @@ LATE = ("rig", "binding", "repair", "edits")
 
 
 def changes_of(state: State) -> str:
-    """Return what of the weights that are exported differs from the file, in a line."""
+    """Summarise in a line how the exported weights differ from the file's."""
     if state.binding is None:
         return ""
     counts = changed_rows(state)
@@ -84,13 +84,13 @@ def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
 
 
 def page(state: State) -> Callable[..., str]:
-    """Return what makes the interactive page of a state, which begins with what is seen."""
+    """Return a function that makes the interactive page, which opens on the current panel."""
     view = state.panel if state.panel in VIEWS else "weights"
-    return partial(interactive_page, view=view)
+    return partial(interactive_page, view=view, colormap=state.colormap)
 
 
 def _described(state: State) -> str:
-    """Return what the exported file contains."""
+    """Describe the content of the exported file."""
     rig, edits = state.rig, state.edits
     if rig is None or keeps_document(rig):
         moved = any(one.position is not None for one in edits.joints.values())
@@ -106,7 +106,7 @@ def _described(state: State) -> str:
 
 
 def _offering(act: Callable[..., None], *arguments: Any) -> Callable[[Session], None]:
-    """Return what starts an export that offers its file to the browser."""
+    """Return a function that starts an export and offers its file to the browser."""
     return lambda session: act(session, *arguments, session.view.offer)
 
 

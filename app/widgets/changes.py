@@ -65,8 +65,8 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     if old is None or old.apart is not new.apart:
         part["apart"] = _reference_skin(new.apart)
     part.update(_colouring(old, new))
-    if (old is not None and old.film) != new.film:
-        part["animation"] = new.film
+    if (old is not None and old.follows_wavefront) != new.follows_wavefront:
+        part["animation"] = new.follows_wavefront
     if not _same_reading(None if old is None else old.reading, new.reading):
         part["reading"] = _reading(new.reading)
     for name, value in _settings(new).items():

@@ -75,15 +75,16 @@ class SceneView(JSComponent):
         if self._is_visible:
             self._begin()
 
-    def present(self, description: Description) -> None:
-        """Show a description."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a description, and parts of the view that belong to it, in one message."""
         self._next = description
+        self._parts.update(parts)
         if self._ready:
-            self._send(changes(self._sent, description, self._sent_arrays))
+            self._send({**changes(self._sent, description, self._sent_arrays), **parts})
             self._sent = description
 
     def send(self, **parts: Unpack[ToBrowser]) -> None:
-        """Send the parts of the view that are no actors.
+        """Send the parts of the view that are no actors: see `shell/session/view_parts.py`.
 
         The last value of each is kept, for a browser that comes later.
         """

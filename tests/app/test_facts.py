@@ -14,7 +14,7 @@ from cutcell_app.derive.memo import Memo
 from cutcell_app.features.compare.results import Compared
 from cutcell_app.features.inspector.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.features.state import PageState
-from cutcell_app.files.graph_numbers import save_graph
+from cutcell_app.files.table_export import save_graph
 from cutcell_app.looks.methods import title_of
 
 

@@ -3,9 +3,12 @@
 from types import SimpleNamespace
 
 import panel_material_ui as pmui
+import pytest
 
 import cutcell
 from cutcell_app.document import loading
+from cutcell_app.editing.select.controls import WEIGHT_SCALE
+from cutcell_app.features.distance import controls as distance
 from cutcell_app.features.graph.controls import CONTROLS
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
@@ -14,7 +17,7 @@ from cutcell_app.shell.bone import BONE
 from cutcell_app.widgets.controls import draw, pick
 from cutcell_app.widgets.text import unique_names
 from cutcell_viewers.graph_scene import LAYERS
-from cutcell_viewers.palette import to_hex
+from cutcell_viewers.palette import COLORMAPS, to_hex
 from tests.viewers.arm import arm_rig
 
 
@@ -55,6 +58,18 @@ def test_the_list_of_bones_follows_the_choice_and_makes_it(bound):
     assert bound.state.joint == 0
     bound.state.joint = 2
     assert menu.value == names[2]
+
+
+@pytest.mark.parametrize("controls", [distance.CONTROLS, WEIGHT_SCALE, CONTROLS])
+def test_a_colour_map_is_chosen_by_name_where_a_field_is_drawn(bound, controls):
+    bound.state.param.update(panel="graph", weights_shown="bone", edge_colors="distance")
+    menus = {one.label: one for one in draw(bound, controls).select(pmui.Select)}
+    menu = menus["Colour map"]
+    assert menu.visible
+    assert list(menu.options.values()) == list(COLORMAPS)
+    assert menu.value == "default"
+    menu.value = "viridis"
+    assert bound.state.colormap == "viridis"
 
 
 def test_the_switch_of_a_layer_has_the_colour_that_its_edges_are_drawn_in(bound):

@@ -95,6 +95,7 @@ def test_what_is_left_while_it_is_dragged_is_as_it_was(held, loop):
     drag(held, [0.1, 0.05, 0])
     held.state.panel = "graph"
     assert held.state.dragged is None
+    loop.rest(held)
     assert held.view.last_sent("mover") is None
     rested(held, loop)
     held.state.panel = "weights"

@@ -201,6 +201,7 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
     state.playing = False
     assert painter.view.last_sent("brush") is not None
     state.panel = "graph"
+    loop.rest(painter)
     assert painter.view.last_sent("brush") is None
 
 

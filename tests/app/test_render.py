@@ -33,12 +33,12 @@ from cutcell_app.headless import (
     state_of,
 )
 from cutcell_app.headless import scene as describing
-from cutcell_app.headless.flags import CHOICES, PICTURE, SETTINGS
 from cutcell_app.headless.lesson_page import STOPS
-from cutcell_app.headless.options import READERS
+from cutcell_app.headless.options import CHOICES, PICTURE, READERS, SETTINGS
 from cutcell_app.shell.session import sweep
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
+from cutcell_viewers.palette import colormap
 from tests.viewers.arm import arm_rig
 from tests.viewers.textures import wall
 
@@ -274,6 +274,7 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.png", ("--cut", "w"), "cut must be x, y or z"),
         ("a.png", ("--cut", "z=2"), "number from 0 to 1 after the ="),
         ("a.png", ("--face", "up"), "face must be one of"),
+        ("a.png", ("--colormap", "jet"), "colormap must be one of 'default', 'viridis'"),
         ("a.png", ("--keep", "all"), "cut_keeps must be one of 'half', 'face', 'slab'"),
         ("a.png", ("--layers", "mesh,bones"), "layer must be one of"),
         ("a.png", ("--color-by", "hue"), "edge_colors must be one of"),
@@ -434,6 +435,10 @@ def test_the_address_of_a_page_is_drawn_from_where_it_looks(drawn, tmp_path):
     assert drawn[-1].description.cut.normal == (0, 0, 1)
     assert drawn[-1].camera is None
     assert drawn[-1].direction == VIEWS["back"]
+    field = "?panel=distance&colormap=viridis"
+    for options, name in (([], "viridis"), (["--colormap", "turbo"], "turbo")):
+        run(demo_path("robot"), tmp_path / "a.png", "--address", field, *options)
+        assert drawn[-1].description.legend.colormap == f"distance:{name}"
 
 
 def test_addresses_are_the_panels_of_a_figure_with_the_first_camera(drawn, tmp_path):
@@ -504,7 +509,9 @@ def test_each_flag_is_a_choice_a_setting_or_an_option_of_the_picture():
 def test_an_html_file_is_an_interactive_page(tmp_path):
     cutcell.save(tmp_path / "arm.glb", arm_rig())
     rig, out = cutcell.load(tmp_path / "arm.glb"), tmp_path / "arm.html"
-    result = run(tmp_path / "arm.glb", out, "--panel", "distance", "--bone", rig.skeleton.names[1])
+    bone = rig.skeleton.names[1]
+    options = ["--panel", "distance", "--bone", bone, "--colormap", "viridis"]
+    result = run(tmp_path / "arm.glb", out, *options)
     assert result.exit_code == 0, result.output
     page = out.read_text(encoding="utf-8")
     scenes = json.loads(unpacked(page, "scenes"))
@@ -512,9 +519,17 @@ def test_an_html_file_is_an_interactive_page(tmp_path):
     joints = len(rig.skeleton.joints)
     assert (len(scenes["weights"]), len(scenes["distance"])) == (joints + 1, joints)
     weights = cutcell.bind(rig, 16).weights
-    kind, first, count, unit = scenes["weights"][1]["actors"]["body"]["scalars"]["$"]
-    stored = unit * np.frombuffer(unpacked(page, "arrays"), kind, count, first)
-    np.testing.assert_allclose(stored, weights[:, 1], atol=1e-4)
+    arrays = unpacked(page, "arrays")
+
+    def stored(part):
+        kind, first, count, unit = part["$"]
+        return unit * np.frombuffer(arrays, kind, count, first)
+
+    np.testing.assert_allclose(
+        stored(scenes["weights"][1]["actors"]["body"]["scalars"]), weights[:, 1], atol=1e-4
+    )
+    table = stored(scenes["distance"][1]["legend"]["table"])
+    assert (table.reshape(-1, 3) == colormap("distance:viridis")).all()
 
 
 @pytest.mark.parametrize(
@@ -525,6 +540,7 @@ def test_an_html_file_is_an_interactive_page(tmp_path):
         ["--panel", "distance", "--sweep", "wave"],
         ["--panel", "check"],
         ["--bone", "no such bone"],
+        ["--colormap", "no such map"],
     ],
 )
 def test_an_interactive_page_refuses_what_it_does_not_follow(options, tmp_path):

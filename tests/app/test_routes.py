@@ -19,11 +19,11 @@ METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 
 ANYONE, PAGES, NOBODY = "anyone", "pages of this server, with their token", "nobody"
 ROUTES = {
-    ("Strange", "Misdirected"): (NOBODY, None),
+    ("UnknownHost", "MisdirectedRequest"): (NOBODY, None),
     ("/?$", "PageHandler"): (ANYONE, "/"),
     ("/ws$", "SocketHandler"): (PAGES, "/ws"),
     (".*%00.*$", "ErrorHandler"): (NOBODY, "/static/%00"),
-    (f"/{ADDRESS}/(.*)$", "Lasting"): (ANYONE, f"/{ADDRESS}/view/view.js"),
+    (f"/{ADDRESS}/(.*)$", "ImmutableFiles"): (ANYONE, f"/{ADDRESS}/view/view.js"),
     ("/favicon.ico$", "IcoHandler"): (ANYONE, "/favicon.ico"),
     ("/static/(?!extensions/)(.*)$", "StaticHandler"): (ANYONE, "/static/js/bokeh.min.js"),
     ("/static/extensions/(.*)$", "MultiRootStaticHandler"): (

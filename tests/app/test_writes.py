@@ -8,7 +8,7 @@ from bokeh.document import Document
 from panel.io import document
 from tornado.websocket import WebSocketClosedError
 
-from cutcell_app.server.writes import leave_none_behind
+from cutcell_app.server.writes import patch_panel_dispatch
 
 PRIVATE = ("_dispatch_msgs", "_WRITE_MSGS", "_WRITE_BLOCK", "extra_socket_handlers")
 
@@ -44,7 +44,7 @@ def connection(monkeypatch):
 
 
 def test_a_message_that_comes_when_a_write_ends_is_written(connection):
-    leave_none_behind()
+    patch_panel_dispatch()
     socket, doc = connection._socket, Document()
 
     async def page():
@@ -64,7 +64,7 @@ def test_a_message_that_comes_when_a_write_ends_is_written(connection):
 
 
 def test_a_browser_that_leaves_between_two_parts_of_a_message_is_no_error(connection, monkeypatch):
-    leave_none_behind()
+    patch_panel_dispatch()
     doc = Document()
 
     def leave(connection, msg):

@@ -11,10 +11,10 @@ from cutcell_viewers.character import pose_in_scene, to_scene
 from cutcell_viewers.error_scene import (
     FLOOR,
     error_limits,
-    error_scene,
     gap_between,
     millimetres,
 )
+from cutcell_viewers.pose_scene import pose_scene
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def test_it_is_the_distance_in_millimetres_on_a_character_of_a_metre(rig, other)
 
 def test_the_scene_shows_the_same_numbers(rig, other):
     transforms = rotate_joint(rig.skeleton, 1, "y", 70)
-    scene = error_scene(rig, rig.weights, other, transforms)
+    scene = pose_scene(rig, rig.weights, transforms, reference=other)
     shown = scene.actors["body"]
     pose = pose_in_scene(rig, transforms)
     between = shown.skin.move(shown.points, pose) - shown.apart.skin.move(shown.points, pose)

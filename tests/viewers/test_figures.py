@@ -12,7 +12,8 @@ import cutcell_viewers
 from cutcell.errors import FileError, ParameterError
 from cutcell_viewers.description import Legend
 from cutcell_viewers.figures import _range
-from cutcell_viewers.film import Order, draw
+from cutcell_viewers.film import draw
+from cutcell_viewers.order import Order
 from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import arm_rig
 

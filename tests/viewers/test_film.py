@@ -15,7 +15,8 @@ from cutcell.errors import Cancelled, FileError, MissingLibraryError
 from cutcell_viewers.camera import Camera, around, framing, sees
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.encoders import find_ffmpeg
-from cutcell_viewers.film import FRAMES, Order, _camera, draw
+from cutcell_viewers.film import _camera, draw
+from cutcell_viewers.order import FRAMES, Order
 from cutcell_viewers.palette import DARK, LIGHT
 from cutcell_viewers.process import draw_isolated
 from cutcell_viewers.studio import Studio

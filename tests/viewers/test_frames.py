@@ -10,7 +10,8 @@ from PIL import Image
 from cutcell_viewers import process as drawing_process
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
-from cutcell_viewers.process import DrawingProcess, Frame
+from cutcell_viewers.order import Order
+from cutcell_viewers.process import DrawingProcess
 
 SIZE = (200, 120)
 
@@ -30,8 +31,8 @@ def plate(color, view=None):
 
 def pixels(process, scene, camera=None, **options):
     camera = camera or Camera((0.0, 0.0, 8.0), (0.0, 0.0, 0.0))
-    options = {"size": SIZE, "tiles": ((0, 0, *SIZE),), **options}
-    picture = process.draw(Frame(scene, camera, **options))
+    canvas = {"size": SIZE, "tiles": ((0, 0, *SIZE),), "page_height": SIZE[1], "fine": True}
+    picture = process.draw(Order(scene, camera=camera, **{**canvas, **options}))
     return np.asarray(Image.open(io.BytesIO(picture))).astype(int)
 
 
@@ -54,7 +55,7 @@ def test_the_camera_sees_its_target_where_it_says(drawing):
 
 def test_each_view_has_its_own_tile(drawing):
     actors = {"a": plate((1.0, 0.0, 0.0), 0), "b": plate((0.0, 0.0, 1.0), 1)}
-    scene = Description(actors, views=("a", "b"))
+    scene = Description(actors)
     drawn = pixels(drawing, scene, tiles=((0, 0, 100, 120), (100, 0, 100, 120)))
     assert drawn[60, 50, 0] > 150 > drawn[60, 50, 2]
     assert drawn[60, 150, 2] > 150 > drawn[60, 150, 0]

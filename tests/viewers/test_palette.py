@@ -42,6 +42,24 @@ def test_iso_lines_are_as_many_as_they_say():
     assert len(drops) in (palette.ISO_LINES - 1, palette.ISO_LINES)
 
 
+def test_maps_of_matplotlib_take_the_place_of_ours():
+    from matplotlib import colormaps
+
+    table = palette.colormap("weight:viridis")
+    expected = 255 * colormaps["viridis"](np.linspace(0, 1, palette.TEXELS))[:, :3]
+    np.testing.assert_allclose(table, expected, atol=0.5)
+    lined, ours = palette.colormap("distance:gray"), palette.colormap("distance")
+    assert (np.diff(lined.astype(int).sum(axis=1)) < -60).sum() >= palette.ISO_LINES // 2
+    reached = palette.colormap("reached:turbo")
+    assert (reached[-1] == palette.to_bytes(palette.UNREACHED)).all()
+    assert reached.shape == lined.shape == ours.shape
+
+
+def test_an_unknown_map_is_refused():
+    with pytest.raises(cutcell.CutcellError, match="viridis"):
+        palette.colormap("weight:no such map")
+
+
 def test_neighbouring_joints_have_different_colours():
     colors = joint_colors(np.arange(60) - 1)
     assert ((colors >= 0) & (colors <= 1)).all()

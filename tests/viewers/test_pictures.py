@@ -13,8 +13,8 @@ from cutcell_viewers import palette
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_scene
-from cutcell_viewers.film import ground
 from cutcell_viewers.graph_scene import cut_at, graph_scene
+from cutcell_viewers.order import ground
 from cutcell_viewers.palette import LIGHT
 from cutcell_viewers.pose_scene import joint_turns, pose_scene
 from cutcell_viewers.scene import Scene, render_png

@@ -95,16 +95,15 @@ def radius_of(state: State) -> float:
     return float(state.brush_radius * np.ptp(state.rig.mesh.bounds, axis=0).max())
 
 
-def brush_part(session: Session) -> sent.Brush | None:
+def brush_part(state: State) -> sent.Brush | None:
     """Return the brush's size and its mirror plane; None for no brush."""
-    state = session.state
     part: sent.Brush | None = None
     if paints(state):
         scale = abs(np.linalg.det(state.rig.world[:3, :3])) ** (1 / 3)
         part = {"radius": radius_of(state) * scale, "mirror": None}
         # A pose is seldom mirrored: the other brush is elsewhere then than its image.
         posed = state.panel == "pose" and state.posed
-        mirror = mirror_of(session) if state.brush_mirrored and not posed else None
+        mirror = mirror_of(state) if state.brush_mirrored and not posed else None
         alike = state.brush_mode in WITHOUT_JOINT
         if mirror is not None and (alike or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
@@ -195,7 +194,7 @@ class Hand:
                 state.weights,
                 state.joint,
                 brush,
-                mirror=mirror_of(session) if state.brush_mirrored else None,
+                mirror=mirror_of(state) if state.brush_mirrored else None,
                 locked=locked_names(state.edits),
                 max_influences=state.max_influences,
                 within=within,

@@ -40,7 +40,7 @@ def hang_on(session: Session, parent: str) -> None:
     if on == int(skeleton.parents[joint]):
         return
     hung = {joint: on}
-    mirror, partner = mirror_of(session), moves_along(session)
+    mirror, partner = mirror_of(state), moves_along(state)
     # Where one side is an ancestor of the other, the other stays.
     independent = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
     if mirror is not None and partner is not None and independent:
@@ -132,7 +132,7 @@ def _unused(name: str, names: Collection[str]) -> str:
 def _change(session: Session, change: Callable[[Rig, Edits, str], tuple[Edits, str]]) -> None:
     """Change the chosen joint and the one on the other side; choose what the first leads to."""
     state = session.state
-    names, partner = state.rig.skeleton.names, moves_along(session)
+    names, partner = state.rig.skeleton.names, moves_along(state)
     edits, chosen = state.edits, []
     try:
         for joint in (state.joint, *([] if partner is None else [partner])):

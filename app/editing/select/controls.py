@@ -74,6 +74,7 @@ def _is_bone(state: Any) -> bool:
 
 WEIGHT_SCALE = ui.column(
     ui.choice("weight_scale"),
+    ui.select("colormap", "Colour map"),
     ui.slider("weight_limit", format="0.000", visible=lambda s: s.weight_scale == "limit"),
     ui.switch("weight_outline"),
     visible=_is_bone,

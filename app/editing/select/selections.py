@@ -52,9 +52,8 @@ def can_select(state: State) -> bool:
     return bool(is_ready and state.open_panel.paints)
 
 
-def lasso_part(session: Session) -> Through | None:
+def lasso_part(state: State) -> Through | None:
     """Return the lasso's settings for the view; None while it is off."""
-    state = session.state
     if not (state.lasso and can_select(state) and not state.playing):
         return None
     return {"through": state.lasso_through}

@@ -18,7 +18,7 @@ from ...document.document import Repair, put
 from ...document.edits import repaired, uses_weights
 from ...document.framing import bounds_of
 from ...document.look import set_camera
-from ...document.method import GRAPH, method_of
+from ...document.method import GRAPH, default, method_of
 from ...document.session import Session
 from ...document.state import State
 from ...editing.compute.stack import with_base
@@ -66,7 +66,7 @@ def _export_diagnosis(
 def _reusable(state: State) -> BoneDistances | None:
     """Return the binding's distances if a diagnosis of the character would measure the same."""
     names = tuple(name for name in GRAPH if name != "resolution")
-    if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
+    if state.binding is None or method_of(state, names) != {name: default(name) for name in names}:
         return None
     distances: BoneDistances = state.binding.distances
     of_rig = data_fingerprint(state.rig.skeleton)

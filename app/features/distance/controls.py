@@ -42,6 +42,7 @@ CONTROLS = ui.column(
             ui.choice("cut_face", visible=lambda s: s.cut_axis not in ("auto", "off")),
             visible=_one,
         ),
+        ui.select("colormap", "Colour map"),
         top=8,
     ),
     ui.section(

@@ -68,9 +68,11 @@ def side_by_side(state: State, memo: Memo) -> Description:
         see = 1.0 if path is None else BODY_OPACITY_WITH_PATH
         if len(one.sides):
             voxels = memo("voxels", (rig, one, limits), partial(_voxels, rig, one, limits))
-            actors["voxels"] = replace(voxels, view=view, film=state.wave, opacity=see)
+            actors["voxels"] = replace(voxels, view=view, follows_wavefront=state.wave, opacity=see)
             see = see if see == 1 else INSIDE_VOXELS
-        actors[body] = replace(plain, view=view, film=state.wave, opacity=see, **colors)
+        actors[body] = replace(
+            plain, view=view, follows_wavefront=state.wave, opacity=see, **colors
+        )
         captions.append(title)
     if legend is not None and state.wave:
         legend = replace(legend, swatches=(*legend.swatches, (BODY, "not reached yet")))

@@ -27,9 +27,8 @@ def halt_wave(session: Session, front: float) -> None:
     session.state.front = min(max(front, 0.0), 1.0)
 
 
-def wave_part(session: Session) -> Wave | None:
+def wave_part(state: State) -> Wave | None:
     """Return how far and how fast the wavefront runs in the browser; None where it does not."""
-    state = session.state
     if state.panel != "distance" or not (state.wave and state.animating):
         return None
     end = farthest(state)

@@ -34,7 +34,7 @@ def scene(state: State, memo: Memo) -> Description:
     path = path_of(state, memo)
     inside = (path is not None and len(path) > 0) or state.starts
     see = BODY_OPACITY_WITH_PATH if inside and cut is None else 1.0
-    actors = character(state, memo, **colors, film=state.wave, opacity=see)
+    actors = character(state, memo, **colors, follows_wavefront=state.wave, opacity=see)
     swatches = legend.swatches
     if cut is not None and state.cut_face == "winding":
         face, legend = winding_section(state, memo, cut)
@@ -42,7 +42,9 @@ def scene(state: State, memo: Memo) -> Description:
         swatches = legend.swatches
     elif cut is not None:
         face = field_section(state, memo, cut, state.field, limits)
-        actors |= {name: replace(actor, film=state.wave) for name, actor in face.items()}
+        actors |= {
+            name: replace(actor, follows_wavefront=state.wave) for name, actor in face.items()
+        }
     if state.starts and has_field(state):
         parts, swatch = _starts(state, memo)
         actors |= parts

@@ -79,6 +79,13 @@ def _cut(state: State) -> bool:
     return state.cut_axis != "off" and not state.slicing
 
 
+def _has_field(state: State) -> bool:
+    """Return whether the edges or the face of the cut have the colours of a colour map."""
+    return _whole(state) and (
+        state.edge_colors in ("depth", "distance") or (_cut(state) and state.graph_face == "field")
+    )
+
+
 def _is_idle(state: State) -> bool:
     """Return whether the open character has no results and no computation runs."""
     return state.rig is not None and not (state.binding or state.built_graph or state.busy)
@@ -100,6 +107,7 @@ CONTROLS = ui.column(
             visible=_whole,
         ),
         ui.choice("edge_colors", visible=_whole),
+        ui.select("colormap", "Colour map", visible=_has_field),
         ui.caption(
             "The chosen bone carries no weight, so no distance begins at it.",
             visible=lambda s: s.edge_colors == "distance" and _whole(s) and ui.weightless(s),

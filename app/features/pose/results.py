@@ -28,20 +28,20 @@ def watch(session: Session) -> None:
     session.view.listen(Play, lambda message: session.state.param.update(playing=message.on))
 
 
-def motion_part(session: Session) -> Motion | None:
-    """Return the motion that is on, or None."""
-    state = session.state
+def motion_part(state: State) -> Motion | None:
+    """Return the motion that is on, or None; raise a `CutcellError` if it cannot be played."""
     clip = clip_of(state)
-
-    def make() -> Motion | None:
-        try:
-            return clip_part(state, clip)
-        except CutcellError as error:  # the clip cannot be played
-            session.fail(error)
-            return None
-
-    part: Motion | None = session.memo("clip", (state.rig, clip is None, state.motion), make)
+    inputs = (state.rig, clip is None, state.motion)
+    part: Motion | None = state.memo("clip", inputs, lambda: clip_part(state, clip))
     return part
+
+
+def is_playing(state: State) -> bool:
+    """Return whether a motion runs in the browser."""
+    try:
+        return bool(state.playing and motion_part(state))
+    except CutcellError:
+        return False
 
 
 class Hand:

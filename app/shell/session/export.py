@@ -16,7 +16,7 @@ from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
-from cutcell_viewers.film import FRAMES, Order
+from cutcell_viewers.order import FRAMES, Order
 from cutcell_viewers.pose_scene import clip_in_scene
 from cutcell_viewers.process import draw_isolated
 
@@ -25,9 +25,8 @@ from ...derive.memo import Memo
 from ...derive.processes import in_process
 from ...document.session import Session
 from ...features.scenes import following, resolve
-from ...files.graph_numbers import save_graph
 from ...files.receive import safe_name
-from ...files.table_export import save_numbers, settings_of
+from ...files.table_export import save_graph, save_numbers, settings_of
 from ...looks.pose import chosen_clip, clip_of
 from .export_queue import proceed, when_ready
 from .sweep import sweep_of, sweep_scenes
@@ -54,7 +53,7 @@ class Seen:
 
     @classmethod
     def now(cls, session: Session) -> Seen:
-        """Return what a session's page shows."""
+        """Take a snapshot of a session's page."""
         view = session.view
         seen = view.camera, view.aspect, view.page_height, view.time
         return cls(session.state.snapshot(), session.memo, *seen)
@@ -67,7 +66,7 @@ class Seen:
         return replace(description, pose=pose_in_scene(self.state.rig, pose_at(clip, self.time)))
 
     def order(self, pixels: int, description: Description) -> Order:
-        """Return what is to be drawn of a scene, from where it is looked at."""
+        """Return the order of a picture of a scene, from the current camera."""
         theme = "dark" if self.state.dark else "light"
         size = picture_size(pixels, self.aspect)
         return Order(description, theme, size, self.camera, page_height=self.height)
@@ -85,13 +84,13 @@ def queued(export: Callable[..., None]) -> Callable[..., None]:
 
 @queued
 def export_picture(session: Session, done: Done) -> None:
-    """Draw what is seen, large and with its legend, and hand over the PNG."""
+    """Draw the view, large and with its legend, and hand over the PNG."""
     _draw(session, "png", done, lambda seen, _: seen.order(PICTURE_PIXELS, seen.posed()))
 
 
 @queued
 def export_turntable(session: Session, ending: str, done: Done) -> None:
-    """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
+    """Film the view while the camera circles it once; "mp4" or "gif"."""
 
     def order(seen: Seen, progress: Progress) -> Order:
         return replace(seen.order(FILM_PIXELS, seen.posed()), turntable=True)
@@ -213,7 +212,7 @@ def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
 def _draw(
     session: Session, ending: str, done: Done, order: Callable[[Seen, Progress], Order]
 ) -> None:
-    """Draw what is seen now; describing a large character is slow, too."""
+    """Draw the current view; describing a large character is slow, too."""
     snapshot = Seen.now(session)
     stage = "drawing the picture" if ending == "png" else "drawing the film"
 
@@ -256,6 +255,6 @@ def _hand_over(
 
 
 def stem_of(session: Session) -> str:
-    """Return what the files of a character are called; its own name may be no file's name."""
+    """Return the stem of a character's exported files, safe as a file name."""
     rig = session.state.rig
     return safe_name(Path(rig.name).stem) if rig is not None and rig.name else "character"

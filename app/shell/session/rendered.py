@@ -1,10 +1,12 @@
 """Rendered: the canvas as PyVista draws it on the server, once the view rests."""
 
+from dataclasses import replace
 from typing import Any
 
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
-from cutcell_viewers.process import DrawingProcess, Frame
+from cutcell_viewers.order import Order
+from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ...document.session import Session
@@ -19,10 +21,8 @@ MAX_TILES = 16
 
 
 def watch(session: Session) -> None:
-    """Draw a frame when the browser asks for one; say when the switch is turned."""
-    state, view = session.state, session.view
-    state.param.watch(lambda *events: view.send(rendered=state.rendered), "rendered")
-    view.listen(DrawFrame, lambda message: draw(session, message))
+    """Draw a frame when the browser asks for one."""
+    session.view.listen(DrawFrame, lambda message: draw(session, message))
 
 
 def draw(session: Session, message: DrawFrame) -> None:
@@ -31,7 +31,7 @@ def draw(session: Session, message: DrawFrame) -> None:
 
     def work(progress: Any) -> bytes | CutcellError:
         try:
-            return PROCESS.draw(Frame(scene.posed(), **options))
+            return PROCESS.draw(Order(replace(scene.posed(), views=()), **options))
         except CutcellError as error:
             return error
 
@@ -57,7 +57,7 @@ def _frame_options(message: DrawFrame) -> dict[str, Any]:
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
-        "pixel_ratio": ratio,
+        "page_height": size[1] / ratio,
         "fine": message.fine,
     }
 

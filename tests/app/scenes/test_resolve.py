@@ -51,6 +51,34 @@ def test_before_anything_is_computed_the_files_own_weights_are_seen(rig, panel):
     assert plain.legend is None
 
 
+FIELDS = {
+    "distance": {"cut_axis": "z"},
+    "weights": {"weights_shown": "bone"},
+    "graph": {"edge_colors": "depth"},
+    "compare": {"compare_field": "bone"},
+}
+
+
+@pytest.mark.parametrize("panel", FIELDS)
+def test_a_colour_map_is_that_of_the_field_its_cut_and_its_legend(state, panel):
+    state.param.update(panel=panel, field=state.binding.distances.field(1), **FIELDS[panel])
+    before = resolve(state)
+    state.colormap = "viridis"
+    after = resolve(state)
+    changed = {n for n, actor in after.actors.items() if actor.colormap.endswith(":viridis")}
+    assert changed == {n for n, actor in before.actors.items() if actor.scalars is not None}
+    assert changed >= ({"body", "inside"} if panel == "distance" else set())
+    assert after.legend.colormap == f"{before.legend.colormap}:viridis"
+    assert following(state).actors["body"].colormap == after.actors["body"].colormap
+
+
+def test_a_colour_map_does_not_change_what_is_no_such_field(state):
+    state.param.update(panel="weights", weights_shown="count")
+    before = resolve(state)
+    state.colormap = "viridis"
+    assert resolve(state).legend == before.legend
+
+
 def test_either_side_may_be_seen_alone_and_taken_for_the_truth(state, rig, binding):
     state.param.update(panel="weights", weights_shown="bone", weights_of="file")
     seen = resolve(state)
