@@ -174,7 +174,7 @@ def test_too_large_a_file_is_refused_before_it_is_sent(visit, tmp_path):
 def test_a_cancelled_upload_leaves_all_as_it_was(visit, tmp_path):
     big = tmp_path / "big.glb"
     with big.open("wb") as file:
-        file.truncate(150 * 2**20)
+        file.truncate(60 * 2**20)
     points = len(visit.points())
     visit.drop(big)
     visit.expect_text(re.compile(r"Sending big\.glb"))
@@ -184,13 +184,3 @@ def test_a_cancelled_upload_leaves_all_as_it_was(visit, tmp_path):
     assert len(visit.points()) == points
     visit.drop(demo_path("rabbit"))
     visit.page.wait_for_function("n => __cutcell.report().actors.body.points !== n", arg=points)
-
-
-def test_two_clicks_at_once_leave_one_result(visit):
-    rabbit = visit.page.get_by_role("combobox", name="Character")
-    visit.choose("Character", "Rabbit")
-    visit.choose("Character", "Octopus")
-    visit.page.wait_for_function("location.search.includes('rig=octopus')")
-    visit.wait_until_bound()
-    assert rabbit.inner_text() == "Octopus"
-    assert visit.page.get_by_text("unexpected").count() == 0
