@@ -271,9 +271,7 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, small, tmp_path)
     visit.page.keyboard.press("Escape")
     expect(paints).not_to_be_checked()
 
-    visit.page.reload()
-    visit.wait_until_bound()
-    visit.dismiss()
+    come_again(visit)
     assert corrected(visit) == held
     weights = exported(visit, tmp_path).weights
     fresh = cutcell.bind(small, RESOLUTION, edits=held)
