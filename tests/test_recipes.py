@@ -15,7 +15,7 @@ from cutcell_app.features.state import PANELS
 from tests.test_layers import ROOT
 
 PANEL = """
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session.begin import begin
 from cutcell_app.features.builders import BUILDERS
 from cutcell_app.features.scenes import resolve
 from tests.viewers.arm import arm_rig
@@ -33,7 +33,7 @@ from typer.testing import CliRunner
 import cutcell
 from cutcell.cli.app import app
 from cutcell.graph.fingerprint import graph_fingerprint
-from cutcell_app.shell.begin import begin
+from cutcell_app.shell.session.begin import begin
 from cutcell_app.features.builders import BUILDERS
 mesh = cutcell.TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]])
 try:

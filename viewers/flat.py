@@ -1,6 +1,6 @@
 """One plane of the lattice as flat data: rays, crossings, pieces, nodes and edges.
 
-The browser draws it and searches it without a server (`flat_scene.js`).
+The browser draws it and searches it without a server (`app/frontend/flat/scene.js`).
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class FlatSection:
         return np.where(self.flips, 1 - chosen, chosen)
 
     def data(self) -> dict[str, Any]:
-        """Return the section as JSON values for the browser; see `flat_scene.js`."""
+        """Return the section as JSON values for the browser; see `app/frontend/flat/scene.js`."""
         graph, outline = self.graph, self.flat(self.outline)
         margin = 1 / graph.lattice.resolution
         whole = self.flat(graph.lattice.to_unit(self.rig.mesh.bounds))

@@ -1,4 +1,4 @@
-"""Lines and points, drawn by PyVista as the page draws them (frontend/stroke_shaders.js)."""
+"""Lines and points, drawn by PyVista as the page draws them (frontend/engine/stroke_shaders.js)."""
 
 from __future__ import annotations
 

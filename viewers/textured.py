@@ -88,4 +88,4 @@ DITHERED = """//VTK::DepthPeeling::Impl
   if (gl_FragData[0].a < least) { discard; }
   gl_FragData[0].a = 1.0;
 """
-"""Draws the share of pixels that alpha gives, as the page does (frontend/materials.js)."""
+"""Draws the share of pixels that alpha gives, as the page does (frontend/engine/materials.js)."""

@@ -10,6 +10,7 @@ from typing import Any
 from cutcell.runtime.progress import Progress, silent
 
 from .jobs import COMPUTING, Slots
+from .reading import ReadOnlyState
 
 Inputs = tuple[Any, ...]
 
@@ -94,10 +95,37 @@ class Derived:
         setattr(state, self.name, value)
 
 
-def compute_wanted(state: Any, results: Iterable[Derived], progress: Progress = silent) -> None:
-    """Compute all results that a state without an engine wants."""
-    for one in results:
-        for part in [(key,) for key in one.parts(state)] if one.parts else [()]:
-            inputs = one.inputs(state, *part)
-            if inputs is not None and one.wanted(state, *part):
-                one.put(state, one.work(state, inputs, *part)(progress), *part)
+class ComputedWhenRead(ReadOnlyState):
+    """A state without an engine: each result that is wanted is computed when it is first read.
+
+    Results that the state has already stay.
+
+    Parameters
+    ----------
+    state : param.Parameterized
+    results : iterable of Derived
+    progress : callable
+        See `cutcell.runtime.progress`.
+    """
+
+    def __init__(self, state: Any, results: Iterable[Derived], progress: Progress = silent) -> None:
+        super().__init__(type(state), state)
+        unread = {one.name: one for one in results if one.parts or getattr(state, one.name) is None}
+        self.__dict__.update(_unread=unread, _progress=progress)
+
+    def __getattr__(self, name: str) -> Any:
+        one = None if name.startswith("_") else self._unread.pop(name, None)
+        if one is not None:
+            self._compute(one)
+        return super().__getattr__(name)
+
+    def _compute(self, one: Derived) -> None:
+        for name in one.after:
+            getattr(self, name)
+        before = getattr(self._source, one.name) or ()
+        keys = one.parts(self) if one.parts else ()
+        for part in [(key,) for key in keys if key not in before] if one.parts else [()]:
+            inputs = one.inputs(self, *part)
+            if inputs is not None and one.wanted(self, *part):
+                value = one.work(self, inputs, *part)(self._progress)
+                one.put(self._source, value, *part)

@@ -1,8 +1,12 @@
-"""The engine of derived results: it computes what is wanted and out of date."""
+"""The engine of derived results: it computes what is wanted and out of date.
+
+It is also what tells everything else of a change: what follows the state is called once all results
+hold again, and only where it has read what changed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Set
 from functools import partial
 from typing import Any
 
@@ -12,7 +16,14 @@ from cutcell.runtime.progress import silent
 
 from .derived import Derived, Inputs
 from .jobs import WAITING
+from .reading import ReadOnlyState, Recorded
 from .work import Work
+
+RULES, VIEW, WIDGETS = range(3)
+"""Levels of what follows the state: choices that follow others, the view, the page around it."""
+
+Follow = Callable[[Set[str], bool], None]
+"""Takes the names of parameters that have changed, and whether all widgets are to be reset."""
 
 
 class _Entry:
@@ -20,6 +31,8 @@ class _Entry:
 
     def __init__(self, derived: Derived, part: tuple[Hashable, ...]) -> None:
         self.derived, self.part, self.key = derived, part, (derived.name, *part)
+        self.inputs: Recorded[Inputs | None] = Recorded(derived.inputs, *part)
+        self.wanted: Recorded[bool] = Recorded(derived.wanted, *part)
         self.values: list[tuple[Inputs, Any]] = []
         self.shown: Any = None
         self.computed: Inputs = ()  # inputs of the computation that runs
@@ -46,6 +59,18 @@ class _Entry:
         return self.values[0][1] if self.values else None
 
 
+class _Current(ReadOnlyState):
+    """The state for results: each one that is read is brought up to the state first."""
+
+    def __init__(self, state: Any, refresh: Callable[[str], None]) -> None:
+        super().__init__(type(state), state)
+        self.__dict__["_refresh"] = refresh
+
+    def __getattr__(self, name: str) -> Any:
+        self._refresh(name)
+        return super().__getattr__(name)
+
+
 class Engine:
     """Keeps the results of one page up to its state; all methods belong to the page's thread.
 
@@ -66,32 +91,99 @@ class Engine:
     def __init__(self, state: Any, work: Work, owner: Any = None) -> None:
         self._state, self._work, self._owner = state, work, owner
         self._declared: dict[str, Derived] = {}
+        self._due: dict[str, Derived] = {}
+        self._rested: Hashable = None
+        self._current = _Current(state, self._refresh_result)
+        self._parts: dict[str, Recorded[tuple[Hashable, ...]]] = {}
         self._entries: dict[tuple[Hashable, ...], _Entry] = {}
         self._failures: list[Callable[[], None]] = []
         self._updating = self._again = False
+        self._followers: list[tuple[int, Follow, set[str]]] = []
+        self._is_reset = self._following = False
+        # Results come before all other watchers, and what is shown of the state after them.
+        names = [name for name in state.param if name != "name"]
+        state.param.watch(self._changed, names)
+        state.param.watch(self._noted, names, precedence=1)
 
-    def declare(self, results: Iterable[Derived], unwatched: Iterable[str] = ()) -> None:
-        """Keep results up to the state from now on; some of its attributes are no inputs."""
+    def declare(self, results: Iterable[Derived]) -> None:
+        """Keep results up to the state from now on."""
         self._declared = {one.name: one for one in results}
-        others = {"name", "computing", "queued", *unwatched, *self._declared}
-        self._state.param.watch(self.update, [n for n in self._state.param if n not in others])
+        self._parts = {
+            name: Recorded(lambda state, parts=one.parts: tuple(parts(state)))
+            for name, one in self._declared.items()
+            if one.parts is not None
+        }
 
-    def update(self, *events: Any, rested: Hashable = None) -> None:
+    def follow(self, act: Follow, level: int) -> None:
+        """Call a function after changes, when all results hold and lower levels have acted."""
+        self._followers.append((level, act, set()))
+        self._followers.sort(key=lambda one: one[0])
+
+    def when(self, function: Callable[[Any], Any], act: Callable[[Any], Any]) -> None:
+        """Call `act` with the value of a function of the state after each change of it."""
+        cell = Recorded(function)
+        before = cell.read(self._state)
+
+        def changed(names: Set[str], is_reset: bool) -> None:
+            nonlocal before
+            if cell.forget(names) and (value := cell.read(self._state)) is not before:
+                before = value
+                act(value)
+
+        self.follow(changed, RULES)
+
+    def update(self, *, rested: Hashable = None) -> None:
         """Hide what no longer holds, stop what is not wanted, start what is missing.
 
         The inputs of the result with the key `rested` have not changed for a while.
         """
+        self._update(rested)
+        self._follow()
+
+    def _changed(self, *events: Any) -> None:
+        if self._forget({event.name for event in events}):
+            self._update()
+
+    def _forget(self, names: Set[str]) -> bool:
+        """Drop what was read of some parameters; return whether there was anything."""
+        cells: list[Recorded[Any]] = [*self._parts.values()]
+        cells += [cell for one in self._entries.values() for cell in (one.inputs, one.wanted)]
+        stale = [one.forget(names) for one in cells]
+        return any(stale) or not self._entries
+
+    def _noted(self, *events: Any) -> None:
+        self._is_reset |= any(event.type == "triggered" for event in events)
+        for _, _, names in self._followers:
+            names.update(event.name for event in events)
+        self._follow()
+
+    def _follow(self) -> None:
+        """Tell all followers what has changed, lower levels first."""
+        if self._updating or self._following:
+            return
+        self._following = True
+        try:
+            while due := [one for one in self._followers if one[2]][:1]:
+                _, act, names = due[0]
+                changed, is_reset = frozenset(names), self._is_reset
+                names.clear()
+                act(changed, is_reset)
+            self._is_reset = False
+        finally:
+            self._following = False
+
+    def _update(self, rested: Hashable = None) -> None:
         self._again = True
         if self._updating or self._work.closed:
             return
-        self._updating = True
+        self._updating, self._rested = True, rested
         try:
             while self._again:
                 self._again = False
                 with batch_call_watchers(self._state):
-                    for derived in self._declared.values():
-                        for entry in self._entries_of(derived):
-                            self._refresh(entry, entry.key == rested)
+                    self._due = dict(self._declared)
+                    for name in self._declared:
+                        self._refresh_result(name)
                     keys = self._work.running() & frozenset(self._entries)
                     if keys != self._state.computing:
                         self._state.param.update(computing=keys, queued=self._state.queued & keys)
@@ -99,7 +191,7 @@ class Engine:
                 for report in failures:
                     report()
         finally:
-            self._updating = False
+            self._updating, self._due = False, {}
         self._work.rest()
 
     def is_fresh(self, name: str) -> bool:
@@ -143,7 +235,7 @@ class Engine:
         name = derived.name
         keys: list[tuple[Hashable, ...]] = [(name,)]
         if derived.parts is not None:
-            keys = [(name, part) for part in derived.parts(self._state)]
+            keys = [(name, part) for part in self._parts[name].read(self._current)]
             keys += [key for key in self._entries if key[0] == name and key not in keys]
         for key in keys:
             if key not in self._entries:
@@ -151,12 +243,12 @@ class Engine:
         return [self._entries[key] for key in keys]
 
     def _inputs(self, entry: _Entry) -> Inputs | None:
-        return entry.derived.inputs(self._state, *entry.part)
+        return entry.inputs.read(self._current)
 
     def _wants(self, entry: _Entry) -> bool:
-        derived, state = entry.derived, self._state
-        is_offered = derived.parts is None or entry.part[0] in derived.parts(state)
-        return is_offered and derived.wanted(state, *entry.part)
+        parts = self._parts.get(entry.derived.name)
+        is_offered = parts is None or entry.part[0] in parts.read(self._current)
+        return is_offered and entry.wanted.read(self._current)
 
     def _is_missing(self, entry: _Entry) -> bool:
         inputs = self._inputs(entry)
@@ -174,6 +266,15 @@ class Engine:
             if not (has_older and self._is_ready(one)) and not self.is_fresh(one.name):
                 return False
         return True
+
+    def _refresh_result(self, name: str) -> None:
+        """Bring a result up to the state, after those that it follows or reads."""
+        derived = self._due.pop(name, None)
+        if derived is not None:
+            for earlier in derived.after:
+                self._refresh_result(earlier)
+            for entry in self._entries_of(derived):
+                self._refresh(entry, entry.key == self._rested)
 
     def _refresh(self, entry: _Entry, rested: bool) -> None:
         derived, work = entry.derived, self._work
@@ -200,6 +301,7 @@ class Engine:
         if value is not entry.shown:
             entry.shown = value
             entry.derived.put(self._state, value, *entry.part)
+            self._forget({entry.derived.name})  # its event may come only after the last entry
             self._again = True
 
     def _is_lane_taken(self, entry: _Entry) -> bool:
@@ -220,7 +322,8 @@ class Engine:
             # Nobody sees the new value beside older ones that followed the value before.
             with batch_call_watchers(state):
                 self._show(entry, self._inputs(entry))
-                self.update()
+                self._update()
+            self._follow()
 
         def failed() -> None:
             entry.refused = inputs

@@ -176,9 +176,9 @@ class Job:
                 result = self._work(self.progress)
             finally:
                 self._slots.give_back(self)
-        except Cancelled:
-            return
         except Exception as error:  # whatever it is, the page must hear of it
+            if isinstance(error, Cancelled) and self.cancelled.is_set():
+                return
             problem = error
             self._later(lambda: self._failed(problem))
         else:

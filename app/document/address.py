@@ -7,30 +7,35 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
+from cutcell.diagnosis import TITLES
+from cutcell_viewers.camera import Camera
+
+from .common import MOMENT
+from .document import Repair
 from .side_by_side import FEWEST_VIEWS, MAX_VIEWS, SINGLE, listed, settled_of, standard
 from .state import State
 
-OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip",
-                 "busy", "stage", "fraction", "message", "step", "staged", "vertex", "node", "part",
-                 "layer", "animating", "joint_handle", "measuring_errors",
-                 "sweeping"})  # fmt: skip
-"""Parameters that belong to one person or moment, or have their own entry in the address, besides tools."""
-
-NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled", "edits")
+NOTED = ("joint", "turns", "clip", "methods", *SINGLE, "settled")
 """Choices that only apply to the open character."""
 
 FORMER_PANELS = {"geodesics": "distance", "diagnosis": "check"}
 """Names of panels in older addresses, and their names today."""
+
+MAX_REPAIRS = 20
 
 CAMERA = 6
 """Numbers of a camera: the position of the eye, and its target."""
 
 
 def simple(state: State) -> dict[str, param.Parameter]:
-    """Return the parameters that are plain choices: switches, numbers, one of a few."""
+    """Return the parameters that are plain choices: switches, numbers, one of a few.
+
+    Those of `MOMENT` and of tools are none.
+    """
     kinds = (param.Boolean, param.Selector, param.Number)
     allowed = state.param.objects("existing")
-    return {n: p for n, p in allowed.items() if n not in OWN | state.tools and isinstance(p, kinds)}
+    plain = {n: p for n, p in allowed.items() if p.precedence != MOMENT and isinstance(p, kinds)}
+    return {name: one for name, one in plain.items() if name not in state.tools}
 
 
 def snapshot(state: State) -> dict[str, Any]:
@@ -38,11 +43,15 @@ def snapshot(state: State) -> dict[str, Any]:
     return {name: getattr(state, name) for name in (*simple(state), *NOTED)}
 
 
+def initial(state: State) -> dict[str, Any]:
+    """Return the initial values of the plain choices but the panel."""
+    return {name: p.default for name, p in simple(state).items() if name != "panel"}
+
+
 def defaults(state: State) -> dict[str, Any]:
     """Return the initial choices without panel, bone and clip."""
-    plain = {name: p.default for name, p in simple(state).items() if name != "panel"}
     methods = standard(state.rig, state.opening.base)
-    return {**plain, "turns": {}, "methods": methods, **dict.fromkeys(SINGLE, ""),
+    return {**initial(state), "turns": {}, "methods": methods, **dict.fromkeys(SINGLE, ""),
             "settled": (), "edits": state.first_edits}  # fmt: skip
 
 
@@ -55,14 +64,17 @@ def to_query(
     `EditsFile.text_of` returns them.
     """
     rig = state.rig
-    plain = {n: p.default for n, p in simple(state).items() if n != "panel"}
     angles = {j: ",".join(f"{a:g}" for a in t) for j, t in state.turns.items() if any(t)}
     values = {
         "rig": state.demo or (f"~{upload_key}" if upload_key else None),
         "panel": state.panel,
         "bone": None if rig is None or state.bare else rig.skeleton.names[state.joint],
         "vertex": None if rig is None else state.vertex,
-        **{n: _text(v) for n, default in plain.items() if (v := getattr(state, n)) != default},
+        **{
+            n: _text(v)
+            for n, default in initial(state).items()
+            if (v := getattr(state, n)) != default
+        },
         "clip": None if state.clip == first_clip(rig) else state.clip,
         "methods": None
         if state.methods == standard(rig, state.opening.base)
@@ -70,6 +82,7 @@ def to_query(
         **{n: getattr(state, n) or None for n in SINGLE},
         "settled": ",".join(state.settled) or None,
         "turns": ";".join(f"{j}:{text}" for j, text in angles.items()) or None,
+        "repairs": _repairs_text(state.repair),
         "edits": edits or None,
         "step": state.step + 1 if state.step >= 0 else None,
         "answer": None if state.step not in state.answers else _text(state.answers[state.step]),
@@ -159,6 +172,17 @@ def _switch(text: str) -> bool:
     return text != "0"
 
 
+def _repairs_text(repair: Repair | None) -> str | None:
+    return None if repair is None else ";".join(map(",".join, repair.codes)) or None
+
+
+def _repairs(text: str) -> tuple[tuple[str, ...], ...]:
+    codes = tuple(tuple(one.split(",")) for one in text.split(";"))
+    if len(codes) > MAX_REPAIRS or not {code for one in codes for code in one} <= TITLES.keys():
+        raise ValueError(text)
+    return codes
+
+
 def _turns(text: str) -> dict[int, tuple[float, ...]]:
     turns = {}
     for part in filter(None, text.split(";")):
@@ -184,8 +208,14 @@ def numbers_of(text: str, count: int = CAMERA) -> list[float]:
     return values
 
 
+def camera_of(numbers: list[float]) -> Camera:
+    """Return the camera of an address: the position of the eye, and its target."""
+    return Camera(tuple(numbers[:3]), tuple(numbers[3:]))  # type: ignore[arg-type]
+
+
 READERS: dict[str, Callable[[str], Any]] = {
-    "rig": str, "bone": str, "edits": str, "turns": _turns, "vertex": int, "clip": int,
+    "rig": str, "bone": str, "edits": str, "repairs": _repairs, "turns": _turns,
+    "vertex": int, "clip": int,
     "methods": _methods, **dict.fromkeys(SINGLE, lambda text: _methods(text, 1, 1)[0]),
     "camera": numbers_of, "settled": settled_of,
     "step": lambda text: int(text) - 1, "answer": str, "stage": _switch, "playing": _switch,

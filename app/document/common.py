@@ -8,6 +8,10 @@ import param
 
 from cutcell_viewers.palette import COLORMAPS
 
+MOMENT = -1.0
+"""`precedence` of parameters that belong to one person or moment: undo leaves them, and the address
+has no entry with their names; it may have entries of its own for them."""
+
 CUTS = ("auto", "off", "x", "y", "z", "free")
 """Cuts through the body; a free plane has any direction, and auto is z on the panel graph."""
 
@@ -22,8 +26,10 @@ class Common(param.Parameterized):
     binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
     built_graph: Any = param.Parameter(None, doc="The graph that was built, or None so far.")
 
-    joint = param.Integer(0, doc="The chosen joint.")
-    vertex = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
+    joint = param.Integer(0, doc="The chosen joint.", precedence=MOMENT)
+    vertex = param.Integer(
+        None, allow_None=True, doc="The clicked vertex, or None.", precedence=MOMENT
+    )
     skeleton = param.Boolean(True, label="Skeleton")
     faint_skeleton = param.Boolean(False, doc="Whether bones are see-through.")
     wireframe = param.Boolean(False, doc="Whether edges of the mesh are drawn on the body.")
@@ -57,7 +63,7 @@ class Common(param.Parameterized):
         False, doc="Whether PyVista draws the view on the server when it rests."
     )
 
-    dark = param.Boolean(False)
+    dark = param.Boolean(False, precedence=MOMENT)
 
     bound: Any = param.Parameter(None, doc="Distances, with weights of many influences, or None.")
     influences: Any = param.Parameter(None, doc="Weights of many influences, or None so far.")
@@ -67,9 +73,11 @@ class Common(param.Parameterized):
     )
     queued: Any = param.Parameter(frozenset(), doc="Of these, keys that wait for other pages.")
 
-    busy = param.Boolean(False, doc="Whether something is being computed.")
+    busy = param.Boolean(False, doc="Whether something is being computed.", precedence=MOMENT)
     stage = param.String("", doc="What is being computed.")
-    fraction = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
+    fraction = param.Number(
+        0.0, doc="How much of the stage is done, from 0 to 1.", precedence=MOMENT
+    )
     exporting = param.String("", doc="Stage of an export while something else is computed.")
     message: Any = param.Parameter(None, doc="(severity, sentence) to show, or None.")
 
@@ -97,9 +105,3 @@ class Common(param.Parameterized):
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights
-
-
-UNSEEN = frozenset({"name", "demo", "step", "answers", "staged", "lesson", "busy", "stage",
-                    "fraction", "exporting", "message", "bound", "influences", "flat_data",
-                    "own", "tier", "rendered", "clicked_method"})  # fmt: skip
-"""Choices that the scene does not depend on."""

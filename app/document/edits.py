@@ -1,15 +1,21 @@
-"""Edits of the character."""
+"""Edits and repairs of the character."""
 
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import param
 
 from cutcell.binding import Binding
-from cutcell.editing import Edits, JointEdit, edited_rig
+from cutcell.diagnosis import Diagnosis, diagnose
+from cutcell.editing import Edits, JointEdit
 from cutcell.editing.restructure import restructured_skeleton
+from cutcell.errors import CutcellError
 from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
+
+from .common import MOMENT
+from .document import Repair, applied
 
 
 class Choices(param.Parameterized):
@@ -20,9 +26,11 @@ class Choices(param.Parameterized):
 
     edits: Any = param.Parameter(Edits(), doc="A cutcell.Edits.")
     opening: Any = param.Parameter(Edits(), doc="The edits that the character was opened with.")
-    layer = param.Integer(None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.")
+    layer = param.Integer(
+        None, allow_None=True, doc="The place of the chosen layer; 0 is lowest.", precedence=MOMENT
+    )
     own: Any = param.Parameter(None, doc="The character without edits: a cutcell.Rig.")
-    joint_handle = param.Boolean(False, label="Show move handle")
+    joint_handle = param.Boolean(False, label="Show move handle", precedence=MOMENT)
     mirrored = param.Boolean(True, label="Mirror")
     moved: Any = param.Parameter(
         None, doc="The rig and its edits while joints are dragged; else None."
@@ -31,7 +39,10 @@ class Choices(param.Parameterized):
     preview: Any = param.Parameter(None, doc="About the binding of the moved rig, or None.")
     exact_preview: Any = param.Parameter(None, doc="The binding of the moved rig, or None so far.")
     part = param.Integer(
-        None, allow_None=True, doc="A vertex of the connected component that is looked at."
+        None,
+        allow_None=True,
+        doc="A vertex of the connected component that is looked at.",
+        precedence=MOMENT,
     )
 
     @property
@@ -63,48 +74,6 @@ class Dragged:
     binding: Binding
 
 
-def edited_state(state: Any, edits: Edits) -> dict[str, Any]:
-    """Return the values of the state that edits of the open character change."""
-    return changes(state, edited_rig(state.own, edits), edits)
-
-
-def changes(state: Any, rig: Rig, edits: Edits) -> dict[str, Any]:
-    """Return what of a state changes with edits and the rig that they make.
-
-    Where the skeleton has other joints, nothing that was computed holds any more, and what was
-    chosen of joints follows them.
-    """
-    changed = {"edits": edits, "rig": rig}
-    if same_structure(state.rig, rig):
-        return changed_only(state, changed)
-    number = _numbers(state.rig, rig)
-    turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
-    joint = number.get(state.joint, 0)
-    return changed_only(state, {**changed, "turns": turns, "joint": joint, "moved": None})
-
-
-def same_structure(one: Rig, other: Rig) -> bool:
-    """Whether two rigs have the same joints by name, each with the same parent."""
-    a, b = one.skeleton, other.skeleton
-    return a.names == b.names and np.array_equal(a.parents, b.parents)
-
-
-def _numbers(before: Rig, after: Rig) -> dict[int, int]:
-    """Return the index after of each joint before that stays, by its index."""
-
-    def keys(rig: Rig) -> list[Any]:
-        names, origin = rig.skeleton.names, rig.origin
-        if origin is None:
-            return list(range(len(names)))
-        return [int(o) if o >= 0 else name for o, name in zip(origin, names, strict=True)]
-
-    a, b = before.skeleton, after.skeleton
-    if np.array_equal(a.parents, b.parents) and np.array_equal(a.joints, b.joints):
-        return {j: j for j in range(len(a.names))}  # some are called otherwise
-    index_of = {key: j for j, key in enumerate(keys(after))}
-    return {j: index_of[key] for j, key in enumerate(keys(before)) if key in index_of}
-
-
 def renamed(edits: Edits, name: str, new: str) -> Edits:
     """Return edits with a joint called otherwise, wherever they name it."""
 
@@ -129,11 +98,55 @@ def tidy(edits: Edits) -> Edits:
     return edits if len(joints) == len(edits.joints) else replace(edits, joints=joints)
 
 
-def changed_only(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
-    """Return what of some choices the state does not hold; param takes the same for new."""
-    large = {name: getattr(state, name) for name in ("rig", "own", "edits", "binding")}
-    return {
-        name: value
-        for name, value in choices.items()
-        if name not in large or not (value is large[name] or value == large[name])
-    }
+def repaired(
+    own: Rig, earlier: Repair | None, diagnosis: Diagnosis, codes: Collection[str]
+) -> Repair:
+    """Return earlier repairs of a character and those of some findings.
+
+    The findings are of the character as it is shown, and the character is repaired as its file has
+    it: repairs change faces and weights of vertices, whose numbers all edits leave as they are.
+    """
+    base = own if earlier is None or earlier.after is None else earlier.after
+    result = Diagnosis(base, diagnosis.findings).repaired(codes)
+    in_vain = frozenset(finding.code for finding in result.in_vain)
+    done = tuple(finding.code for finding in result.repaired)
+    if earlier is None:
+        earlier = Repair((), base, diagnosis.counts, ())
+    if not done:  # nothing changed, and what did not help before does not now
+        in_vain |= earlier.in_vain
+    return Repair(
+        (*earlier.codes, done) if done else earlier.codes,
+        result.rig if done else base,
+        earlier.counts,
+        (*earlier.done, *result.done),
+        in_vain,
+    )
+
+
+def repaired_again(
+    own: Rig,
+    codes: Iterable[Collection[str]],
+    edits: Edits,
+    resolution: int,
+    progress: Progress,
+) -> tuple[Repair | None, str]:
+    """Return the repairs of an address or of a document, and what could not be repeated."""
+    repair, missing = None, []
+    for some in codes:
+        try:
+            rig = applied(own, repair, edits)
+        except CutcellError:
+            rig = applied(own, repair, Edits())  # the edits are reported when they are applied
+        diagnosis = diagnose(rig, resolution, progress=progress)
+        able = [code for code in some if code in diagnosis and diagnosis[code].repair]
+        missing += [code for code in some if code not in able]
+        if able:
+            repair = repaired(own, repair, diagnosis, able)
+    text = f"There was nothing to repair of {', '.join(missing)}." if missing else ""
+    return repair, text
+
+
+def uses_weights(before: Repair | None, after: Repair, own: Rig) -> bool:
+    """Return whether a repair changed the file's weights."""
+    first = own if before is None or before.after is None else before.after
+    return after.after is not None and after.after.weights is not first.weights

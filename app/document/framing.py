@@ -1,7 +1,6 @@
 """Framing of a character: bounds, first bone, cameras and themes, as the view takes them."""
 
 import re
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,6 +11,7 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.palette import THEMES, Theme, to_hex
 
+from ..messages import sent
 from .state import State
 
 
@@ -35,7 +35,7 @@ def theme_of(state: State) -> Theme:
     return THEMES["dark" if state.dark else "light"]
 
 
-def bones_part(state: State) -> dict[str, Any] | None:
+def bones_part(state: State) -> sent.Bones | None:
     """Return the bones as the view needs them for picking, or None."""
     if state.rig is None:
         return None
@@ -48,16 +48,21 @@ def bones_part(state: State) -> dict[str, Any] | None:
     }
 
 
-def theme_part(theme: Theme) -> dict[str, str]:
+def theme_part(theme: Theme) -> sent.Theme:
     """Return a theme as a message for the view."""
     card, paper = ("rgba(24,28,36,.72)", "#1b2028")
     if theme.name == "light":
         card, paper = ("rgba(255,255,255,.72)", "#ffffff")
-    colors = {name: to_hex(getattr(theme, name)) for name in ("top", "bottom", "ink")}
-    return {**colors, "card": card, "paper": paper}
+    return {
+        "top": to_hex(theme.top),
+        "bottom": to_hex(theme.bottom),
+        "ink": to_hex(theme.ink),
+        "card": card,
+        "paper": paper,
+    }
 
 
-def camera_part(camera: Camera) -> dict[str, Any]:
+def camera_part(camera: Camera) -> sent.Cameras:
     """Return a camera as a message for the view."""
     return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
 

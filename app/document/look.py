@@ -1,29 +1,19 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
-from typing import Any
-
 from cutcell_viewers.camera import Camera, framing
 
-from .framing import bounds_of, camera_part, theme_of, theme_part
+from ..messages.received import Pick, PickNode, PickVertex
+from .framing import bounds_of, camera_part
 from .session import Session
-from .state import UNSEEN
 
 
 def watch(session: Session) -> None:
-    """Connect the view to the state, and the state to picks in the view."""
-    state, view = session.state, session.view
-    hidden = UNSEEN | {name for name in state.tools if name.startswith("brush_")}
-    watched = [name for name in state.param if name not in hidden - {"brush_selection"}]
-    state.param.watch(lambda *events: show(session), watched)
-    state.param.watch(lambda *events: show_theme(session), "dark")
-    view.listen("pick", lambda message: pick(session, int(message["joint"])))
-    view.listen("pick-vertex", lambda message: _pick_in_view(session, message))
-    view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
-    state.param.watch(
-        lambda *events: pick_node(session, None),
-        ["rig", "binding", "built_graph", "easy_graph", "graph_resolution"],
-    )
-    show_theme(session)
+    """Connect the state to picks in the view."""
+    view = session.view
+    view.listen(Pick, lambda message: pick(session, message.joint))
+    view.listen(PickVertex, lambda message: pick_vertex(session, message.vertex, message.view))
+    view.listen(PickNode, lambda message: pick_node(session, message.node))
+    session.engine.when(lambda state: state.shown_graph, lambda graph: pick_node(session, None))
 
 
 def pick_node(session: Session, node: int | None) -> None:
@@ -54,29 +44,9 @@ def pick_vertex(session: Session, vertex: int | None, view: int = 0) -> None:
     state.param.update(vertex=vertex, node=None, clicked_method=method)
 
 
-def _pick_in_view(session: Session, message: dict[str, Any]) -> None:
-    pick_vertex(session, int(message["vertex"]), int(message.get("view", 0)))
-
-
 def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
     view, home = session.view, framing(bounds_of(session.state), 1.2)
     view.camera, view.at_home = camera or home, camera is None
-    now = {} if camera is None else {"now": camera_part(camera)}
-    view.send(camera={**camera_part(home), **now})
-
-
-def show(session: Session) -> None:
-    """Show the scene of the state; that of a large character, when it is described."""
-    state, view, memo = session.state, session.view, session.memo
-    if state.quick:
-        session.work.cancel("scene")
-        view.present(session.resolve(state, memo))
-    else:
-        now = state.snapshot()
-        session.work.newest("scene", lambda progress: session.resolve(now, memo), view.present)
-
-
-def show_theme(session: Session) -> None:
-    """Show the colours of the theme that is chosen."""
-    session.view.send(theme=theme_part(theme_of(session.state)))
+    now = None if camera is None else camera_part(camera)
+    view.send(camera={**camera_part(home), "now": now})

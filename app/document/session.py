@@ -4,9 +4,8 @@ import logging
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar, Unpack
 
-from cutcell.editing import Edits
 from cutcell.errors import CutcellError
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
@@ -14,20 +13,23 @@ from cutcell_viewers.description import Description
 from ..derive.engine import Engine
 from ..derive.jobs import Schedule
 from ..derive.memo import Memo
+from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
+from ..messages.received import Message
+from ..messages.sent import ToBrowser
 from ..server.messages import error_text
-from .history import History
+from .document import Document, History
 from .state import State
 
 logger = logging.getLogger("cutcell.app")
 
-Resolve = Callable[[State, Memo], Description]
-"""Returns the scene of a state; a memo speeds up a series of calls."""
-
 WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
+
+
+M = TypeVar("M", bound=Message)
 
 
 class View(Protocol):
@@ -41,13 +43,13 @@ class View(Protocol):
     time: float
     calm: bool
 
-    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+    def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
 
-    def present(self, description: Description) -> None:
-        """Show a scene."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a scene, together with parts of the view that belong to it."""
 
-    def send(self, **parts: Any) -> None:
+    def send(self, **parts: Unpack[ToBrowser]) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
 
     def last_sent(self, name: str) -> Any:
@@ -56,7 +58,7 @@ class View(Protocol):
     def offer(self, name: str, content: bytes) -> None:
         """Send a file to the browser, which saves it."""
 
-    def answer(self, **message: Any) -> None:
+    def answer(self, **message: Unpack[ToBrowser]) -> None:
         """Answer a request of the browser."""
 
 
@@ -69,35 +71,25 @@ class Session:
     schedule : callable
         See `derive.jobs.Schedule`.
     state : State
-    resolve : callable
-        Returns the scene of a state; see `features.scenes.resolve`.
 
     Attributes
     ----------
     work : Work
-        What a person has started, and all other work off the page's thread.
+        All work off the page's thread.
+    tasks : Tasks
+        What a person has started: openings, repairs, templates.
     engine : Engine
         It keeps the results up to the state.
-    memo : Memo
     history : History
-    restoring : bool
-        Whether choices of the past are being restored: they are not recorded again.
     uploads : PageUploads
-    character : str
-        Key that opens the current character again: "demo" and its id, or "~" and the key of
-        uploaded files ("" for those of this machine); empty where nothing does.
+    source : str
+        Key that opens the current character again; see `Document`.
     paths : list of Path
         Files of this machine that the page was opened with.
-    returning : bool
-        Whether that character is shown because somebody went back to it.
     before_lesson : tuple or None
-        The history, the choices, the camera and the tools from before the lesson.
-    arrival : dict
-        Choices of the address for the character that is being loaded.
-    computed : tuple or None
-        The mesh, choices and edits of which everything was computed last.
-    notice : tuple or None
-        The message to show once new weights arrive.
+        The history, the document, the camera and the tools from before the lesson.
+    computed : Document or None
+        What was computed last.
     older_message : tuple or None
         The message from before the last change: new weights remove it.
     edits_file : EditsFile
@@ -106,23 +98,18 @@ class Session:
         Exports that wait for their turn or for the weights; see `export_queue`.
     """
 
-    def __init__(self, view: View, schedule: Schedule, state: State, resolve: Resolve) -> None:
+    def __init__(self, view: View, schedule: Schedule, state: State) -> None:
         self.state = state
         self.view = view
-        self.resolve = resolve
         self.work = Work(schedule, self.fail, self.show_progress)
+        self.tasks = Tasks(self.work, self.fail, self.show_progress)
         self.engine = Engine(self.state, self.work, self)
-        self.memo = Memo()
-        self.history = History({})
-        self.restoring = False
+        self.history = History()
         self.uploads = PageUploads(UPLOADS)
-        self.character = ""
+        self.source = ""
         self.paths: list[Path] | None = None
-        self.returning = False
         self.before_lesson: tuple[Any, ...] | None = None
-        self.arrival: dict[str, Any] = {}
-        self.computed: tuple[Any, dict[str, Any], Edits] | None = None
-        self.notice: tuple[str, str] | None = None
+        self.computed: Document | None = None
         self.older_message: tuple[str, str] | None = None
         self.edits_file = EditsFile(self.uploads)
         self.exports: list[Callable[[], None]] = []
@@ -133,8 +120,10 @@ class Session:
         progress = self.work.progress
         others = [one for name, one in progress.items() if name != "export"]
         export = progress.get("export", (WAITING, 0.0) if self.exports else None)
-        current = others[0] if others else export
+        current = progress.get(self.tasks.running) or (others[0] if others else export)
         stage, fraction = current or (self.state.stage, self.state.fraction)
+        if self.tasks.titles:
+            stage = f"{stage}, then {' and '.join(self.tasks.titles)}"
         self.state.param.update(
             busy=bool(current),
             stage=stage,
@@ -163,6 +152,11 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
+
+    @property
+    def memo(self) -> Memo:
+        """Costly steps of what is shown of the state."""
+        return self.state.memo
 
     @property
     def folder(self) -> Path:

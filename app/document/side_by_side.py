@@ -103,25 +103,28 @@ def standard(rig: Any, base: str = "computed") -> list[str]:
     return [name for name in offered(rig) if name in (first, "artist", "euclidean")]
 
 
-def single_choices(state: State, arrival: Mapping[str, Any], names: list[str]) -> dict[str, str]:
+def single_choices(chosen: Mapping[str, Any], names: list[str]) -> dict[str, str]:
     """Return the choices of one method each, empty where it is not among the names."""
-    chosen = {one: arrival.get(one, getattr(state, one)) for one in SINGLE}
-    return {one: name if name in names else "" for one, name in chosen.items()}
+    return {one: chosen[one] if chosen[one] in names else "" for one in SINGLE}
 
 
-def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
-    """Set the methods for a new character: those of an address, else those chosen before.
+def carried(
+    state: State, rig: Rig, base: str, fresh: bool, arrival: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the methods for a new character: those of an address, else those chosen before.
 
-    `arrival` may have "methods", those of `SINGLE`, and "settled".
+    `base` is what its edits begin from; with `fresh` no choice is carried over. `arrival` may have
+    "methods", those of `SINGLE`, and "settled".
     """
-    standards = [standard(before, base) for base in ("computed", "file")]
-    chosen = [] if state.methods in standards else state.methods
+    standards = [standard(state.rig, base) for base in ("computed", "file")]
+    chosen = [] if fresh or state.methods in standards else state.methods
     wanted = arrival.get("methods", chosen)
-    names = [name for name in wanted if name in listed(state.rig, wanted)]
+    names = [name for name in wanted if name in listed(rig, wanted)]
     if len(names) < FEWEST_VIEWS:
-        names = standard(state.rig, state.opening.base)
-    single = single_choices(state, arrival, names)
-    state.param.update(methods=names, **single, settled=arrival.get("settled", ()))
+        names = standard(rig, base)
+    before = dict.fromkeys(SINGLE, "") if fresh else {one: getattr(state, one) for one in SINGLE}
+    single = single_choices({**before, **arrival}, names)
+    return {"methods": names, **single, "settled": arrival.get("settled", ())}
 
 
 KEY = re.compile(r"[^/,]{1,300}/[^/,]{1,300}/[a-z-]*/\d{1,5}/\d{1,5}")

@@ -3,17 +3,19 @@
 `features.state.PageState` adds those: one object a browser session.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-import param
-
+from ..derive.memo import Memo
+from ..derive.reading import ReadOnlyState
 from . import edits
-from .common import UNSEEN, Common
+from .common import Common
 
-__all__ = ["UNSEEN", "Panel", "State"]
+__all__ = ["Panel", "State"]
 
 QUICK_MESH = 60_000
 QUICK_GRAPH = 400_000
@@ -66,14 +68,22 @@ class State(edits.Choices, Common):
         By the name in the state, in the address and on the command line, in their order.
     tools : frozenset of str
         Parameters of tools, such as the brush: they are no choices, and undo does not change them.
+    memo : Memo
+        Costly steps of what is shown of the state.
     """
 
     panels: ClassVar[Mapping[str, Panel]] = {}
     tools: ClassVar[frozenset[str]] = frozenset()
 
+    def __init__(self, **values: Any) -> None:
+        super().__init__(**values)
+        self.memo = Memo()
+
     if TYPE_CHECKING:  # the parameters of features
 
         def __getattr__(self, name: str) -> Any: ...
+
+        def __setattr__(self, name: str, value: Any) -> None: ...
 
     @property
     def open_panel(self) -> Panel:
@@ -97,13 +107,11 @@ class State(edits.Choices, Common):
         graph_size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
         return mesh_size <= QUICK_MESH and graph_size <= QUICK_GRAPH
 
-    def snapshot(self) -> Any:
-        """Return a copy of all values, for another thread."""
-        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, param.Parameterized)]
-        worked_out = {
-            name: getattr(self, name)
-            for kind in kinds
-            for name, value in vars(kind).items()
-            if isinstance(value, property)
-        }
-        return SimpleNamespace(**{**self.param.values(), **worked_out})
+    def changed(self, **changes: Any) -> State:
+        """Return the state with other values of some parameters, which can only be read."""
+        return cast(State, ReadOnlyState(type(self), self, changes))
+
+    def snapshot(self) -> State:
+        """Return a copy of all values for another thread, which can only be read."""
+        values = {**self.param.values(), "panels": self.panels, "memo": self.memo}
+        return cast(State, ReadOnlyState(type(self), SimpleNamespace(**values)))

@@ -12,6 +12,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
+from ..derive.derived import Derived
+
 PACKAGES = (
     "editing.binding",
     "features.graph",
@@ -37,3 +39,8 @@ def modules(kind: str) -> dict[str, Any]:
     """Return the modules of a kind, for example "results", by the last name of their package."""
     names = {name.rpartition(".")[2]: f"cutcell_app.{name}.{kind}" for name in PACKAGES}
     return {key: import_module(name) for key, name in names.items() if find_spec(name)}
+
+
+def results() -> tuple[Derived, ...]:
+    """Return the results of all packages, which the page and its pictures compute."""
+    return tuple(one for module in modules("results").values() for one in module.RESULTS)

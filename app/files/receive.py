@@ -3,8 +3,17 @@
 from collections.abc import Callable
 from typing import Any
 
-from cutcell.errors import CutcellError, FileError
+from cutcell.errors import FileError
 
+from ..messages.reading import read
+from ..messages.received import (
+    Announced,
+    Message,
+    UploadBegin,
+    UploadCancel,
+    UploadEnd,
+    UploadPiece,
+)
 from ..server.messages import FULL
 from .upload_cache import Group, UploadCache
 
@@ -39,16 +48,10 @@ class Receiver:
 
     def answer(self, message: dict[str, Any]) -> dict[str, Any] | None:
         """Handle a message and return the answer, also after an error; None for other messages."""
-        act = {
-            "upload-begin": self._begin,
-            "upload-piece": self._piece,
-            "upload-end": self._end,
-            "upload-cancel": self._cancel,
-        }.get(str(message.get("type")))
-        if act is None:
+        if not str(message.get("type")).startswith("upload-"):
             return None
         try:
-            act(message)
+            self._receive(read(message))
         except Exception as error:
             self.drop()
             problem = _problem(error)
@@ -62,19 +65,29 @@ class Receiver:
         if group is not None:
             self._cache.drop(group)
 
-    def _begin(self, message: dict[str, Any]) -> None:
+    def _receive(self, message: Message) -> None:
+        match message:
+            case UploadBegin(files):
+                self._begin(files)
+            case UploadPiece(index, data):
+                self._piece(index, data)
+            case UploadEnd():
+                self._end()
+            case UploadCancel(unreadable):
+                self.drop()
+                if unreadable:
+                    raise FileError("the browser could not read the file; was it moved or changed?")
+
+    def _begin(self, files: list[Announced]) -> None:
         self.drop()
-        names, sizes = _announced(message["files"])
+        names, sizes = _announced(files)
         group = self._group = self._cache.begin(sum(sizes), self._owner)
         group.paths = [group.folder / name for name in names]
         self._sizes = sizes
         for path in group.paths:
             path.touch()
 
-    def _piece(self, message: dict[str, Any]) -> None:
-        index, data = int(message["index"]), message["data"]
-        if not isinstance(data, bytes | bytearray | memoryview):
-            raise TypeError("a piece of a file must be bytes")
+    def _piece(self, index: int, data: bytes) -> None:
         group = self._group
         if group is None or not 0 <= index < len(self._sizes):
             raise FileError("a piece of a file came that nothing had announced; try again")
@@ -84,7 +97,7 @@ class Receiver:
             file.write(data)
         group.written += len(data)
 
-    def _end(self, message: dict[str, Any]) -> None:
+    def _end(self) -> None:
         group = self._group
         if group is None:
             raise FileError("no files were announced; try again")
@@ -95,18 +108,13 @@ class Receiver:
         self._group = None
         self._received(group)
 
-    def _cancel(self, message: dict[str, Any]) -> None:
-        self.drop()
-        if message.get("unreadable"):
-            raise FileError("the browser could not read the file; was it moved or changed?")
 
-
-def _announced(files: list[dict[str, Any]]) -> tuple[list[str], list[int]]:
+def _announced(files: list[Announced]) -> tuple[list[str], list[int]]:
     """Return the names and sizes of announced files."""
     if not 0 < len(files) <= MAX_FILES:
         raise FileError(f"{len(files)} files came at once; 1 to {MAX_FILES} can be opened")
-    names = [safe_name(str(file["name"])) for file in files]
-    sizes = [int(file["size"]) for file in files]
+    names = [safe_name(file["name"]) for file in files]
+    sizes = [file["size"] for file in files]
     for name, size in zip(names, sizes, strict=True):
         if not 0 <= size <= MAX_UPLOAD:
             raise FileError(
@@ -125,8 +133,6 @@ def _problem(error: Exception) -> Exception:
         if error.errno in FULL:
             return FileError("the server's disk is full, and the file was not taken; try again")
         return FileError(f"the server could not store the file ({error.strerror}); try again")
-    if isinstance(error, KeyError | TypeError | ValueError) and not isinstance(error, CutcellError):
-        return FileError("the browser sent what this page does not understand; reload it")
     return error
 
 

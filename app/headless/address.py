@@ -8,13 +8,13 @@ from cutcell.cli.options import chosen_method
 from cutcell.errors import ParameterError
 from cutcell_viewers.camera import Camera
 
-from ..document.address import from_query, numbers_of, simple, with_scene
+from ..document.address import camera_of, from_query, numbers_of, simple, with_scene
 from ..document.method import GRAPH, WEIGHTS, effective
 from ..features.state import PageState
 from .choices import Choices
 
 METHOD = (*GRAPH, *WEIGHTS)
-MOMENT = ("bone", "methods", "vertex", "turns", "clip", "minus")
+ENTRIES = ("bone", "methods", "vertex", "turns", "clip", "minus")
 """Entries of the address that are no plain choices of the page."""
 REPLACED = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
@@ -38,13 +38,13 @@ def read_address(text: str) -> tuple[dict[str, Any], Camera | None]:
     state = PageState()
     query = with_scene(urlsplit(text).query if "?" in text else text, state)
     page, arrival, problems = from_query(query, state)
-    problems += ["edits"] * ("edits" in arrival)
+    problems += [name for name in ("edits", "repairs") if name in arrival]
     if problems:
         raise ParameterError(f"the address has entries that cannot be drawn: {', '.join(problems)}")
     options = {name: page.pop(name) for name in METHOD if name in page}
     first = {n: p.default for n, p in simple(state).items() if n not in (*METHOD, "panel")}
     method = effective({"falloff": state.falloff, **options})
-    moment = {name: arrival[name] for name in MOMENT if name in arrival}
+    moment = {name: arrival[name] for name in ENTRIES if name in arrival}
     camera = camera_of(arrival["camera"]) if "camera" in arrival else None
     return {**first, **page, **moment, **method}, camera
 
@@ -82,8 +82,3 @@ def read_camera(text: str) -> Camera:
         raise ParameterError(
             f'camera must be six numbers, such as 0,1,4,0,1,0, not "{text}"'
         ) from None
-
-
-def camera_of(numbers: list[float]) -> Camera:
-    """Return the camera of six numbers: the position of the eye, and its target."""
-    return Camera(tuple(numbers[:3]), tuple(numbers[3:]))  # type: ignore[arg-type]

@@ -1,14 +1,16 @@
 """An interactive page in one file: the messages of the page's server, recorded for each joint.
 
-The page's own scripts draw them, in a browser without a server (frontend/standalone.js).
+The page's own scripts draw them, in a browser without a server (frontend/one_file/standalone.js).
 """
 
 import base64
 import gzip
 import html
 import json
+import posixpath
 import re
 from dataclasses import replace
+from functools import partial
 from string import Template
 from typing import Any
 
@@ -44,7 +46,7 @@ from ..features.scenes import following, resolve
 from ..features.state import PageState
 from ..files.table_export import settings_of
 from ..widgets.changes import changes
-from ..widgets.modules import FOLDER, style
+from ..widgets.modules import FOLDER, names, style
 from ..widgets.view import SceneView
 from .packed import Packed
 
@@ -52,7 +54,9 @@ VIEWS = ("weights", "distance", "graph")
 """Panels that the page can show, by name."""
 MAX_CLIP_NUMBERS = 2**21
 """Largest size of all clips, so that long motions do not outweigh the character."""
-IMPORT = re.compile(r'from "\./(\w+)\.js"')
+IMPORT = re.compile(r'from "(\.\.?/[\w/]+\.js)"')
+BY_NAME = re.compile(r'from "cutcell/([\w/]+\.js)"')
+STYLES = "common/styles.js"
 
 
 def interactive_page(
@@ -103,14 +107,14 @@ def interactive_page(
     scenes["settings"] = settings_of(binding)
     content = f"<aside>{html.escape(caption)}</aside>\n<p>Loading the character …</p>"
     title = title or shown_name(rig.name) or "character"
-    return page_in_one_file("standalone", title, content, packed, scenes)
+    return page_in_one_file("one_file/standalone", title, content, packed, scenes)
 
 
 def page_in_one_file(
     script: str, title: str, content: str, packed: Packed, scenes: dict[str, Any]
 ) -> str:
     """Return a page without a server: its content, scripts, vtk.js and recorded scenes."""
-    template = Template((FOLDER / "one_file.html").read_text(encoding="utf-8"))
+    template = Template((FOLDER / "one_file/page.html").read_text(encoding="utf-8"))
     return template.substitute(
         script=script,
         title=html.escape(title),
@@ -224,29 +228,32 @@ def _facts(rig: Rig, binding: Binding, distances: NDArray[np.float64]) -> dict[s
 
 def _modules(script: str) -> dict[str, str]:
     """Return a script and all that it imports by name, as data URLs."""
-    sources = {"styles": _styles()}
-    waiting = [script]
+    sources = {STYLES: _styles()}
+    waiting = [f"{script}.js"]
     while waiting:
         name = waiting.pop()
         if name not in sources:
-            sources[name] = (FOLDER / f"{name}.js").read_text(encoding="utf-8")
-            waiting += IMPORT.findall(sources[name])
-    return {
-        f"cutcell/{name}.js": _data(name, IMPORT.sub(r'from "cutcell/\1.js"', source))
-        for name, source in sources.items()
-    }
+            source = (FOLDER / name).read_text(encoding="utf-8")
+            sources[name] = IMPORT.sub(partial(_by_name, name), source)
+            waiting += BY_NAME.findall(sources[name])
+    return {f"cutcell/{name}": _data(name, source) for name, source in sources.items()}
+
+
+def _by_name(importer: str, match: re.Match[str]) -> str:
+    """Return an import by the name that a page in one file gives the module: it has no folders."""
+    return f'from "cutcell/{posixpath.normpath(posixpath.join(importer, "..", match[1]))}"'
 
 
 def _styles() -> str:
     """Return the module `styles` with the rules in it instead of their addresses."""
-    rules = {path.name: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.css"))}
+    rules = {name: (FOLDER / name).read_text(encoding="utf-8") for name in names(".css")}
     return f"""const rules = {json.dumps(rules)}
 export const stylesheet = (name) =>
   () => Object.assign(document.createElement("style"), {{textContent: rules[name]}})"""
 
 
 def _data(name: str, script: str) -> str:
-    script += f"\n//# sourceURL=cutcell/{name}.js"  # errors name the script, not all of its text
+    script += f"\n//# sourceURL=cutcell/{name}"  # errors name the script, not all of its text
     return f"data:text/javascript;base64,{base64.b64encode(script.encode()).decode()}"
 
 

@@ -89,7 +89,7 @@ def lesson_page(lesson: Lesson | None = None, *, progress: Progress = silent) ->
         }
     )
     content = f'<p>Loading the lesson …</p>\n<ol class="handout">{"".join(rows)}</ol>'
-    return page_in_one_file("lesson_page", lesson[0].title, content, packed, scenes)
+    return page_in_one_file("one_file/lesson_page", lesson[0].title, content, packed, scenes)
 
 
 def _row(index: int, step: Step, picture: str) -> str:

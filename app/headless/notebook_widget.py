@@ -31,7 +31,7 @@ class PageWidget(anywidget.AnyWidget):
         A joint or a vertex that the rig does not have.
     """
 
-    _esm = FOLDER / "notebook.js"
+    _esm = FOLDER / "one_file/notebook.js"
     content = traitlets.Unicode().tag(sync=True)  # empty until it is shown to a person
     height = traitlets.Int().tag(sync=True)
     joint = traitlets.Any(None).tag(sync=True)

@@ -1,33 +1,24 @@
 """The scene that the page shows for some choices."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
-from cutcell import bind, build_graph, diagnose
+from cutcell import bind, build_graph
 from cutcell.errors import ParameterError
 from cutcell.pose import pose_at
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.description import Description
-from cutcell_viewers.error_scene import gap_between
 from cutcell_viewers.materials import Textures, load_textures
-from cutcell_viewers.pose_scene import clip_in_scene
 
-from ..derive.derived import compute_wanted
+from ..derive.derived import ComputedWhenRead
 from ..document.state import State
-from ..editing.symmetry import results as symmetry
-from ..features.compare import results as compare
-from ..features.distance import results as distance
-from ..features.graph import results as graph
-from ..features.pose.errors import motion_error
+from ..features import results
 from ..features.scenes import following, resolve
 from ..shell.session.sweep import sweep_scenes
 from .choices import Choices, state_of
 from .names import clip_named
-
-RESULTS = (*graph.RESULTS, *distance.RESULTS, *symmetry.RESULTS, *compare.RESULTS)
-"""Results that scenes show besides the weights."""
 
 
 def describe(
@@ -76,12 +67,8 @@ def describe(
     state = _computed(rig, choices, binding, textures, resolution, progress)
     if choices.clip is None or state.bare:
         return resolve(state)
-    clip = clip_named(rig, choices.clip)
-    if choices.error and state.panel == "pose":
-        gap = gap_between(rig, state.binding.weights, rig.weights, state.blending)  # type: ignore[arg-type]
-        state.motion_error = motion_error(clip_in_scene(rig, clip), gap, progress)
-    time = choices.time or 0.0
-    return replace(following(state), pose=pose_in_scene(rig, pose_at(clip, time)))
+    pose = pose_at(clip_named(rig, choices.clip), choices.time or 0.0)
+    return replace(following(state), pose=pose_in_scene(rig, pose))
 
 
 def describe_sweep(
@@ -95,7 +82,7 @@ def describe_sweep(
 ) -> tuple[Description, ...]:
     """Return the scenes of a film of `choices.sweep`, at a rate of frames per second."""
     state = _computed(rig, choices, binding, None, resolution, progress)
-    return sweep_scenes(state.snapshot(), choices.sweep or "", rate, progress=progress)
+    return sweep_scenes(state, choices.sweep or "", rate, progress=progress)
 
 
 def _computed(
@@ -106,7 +93,7 @@ def _computed(
     resolution: int | None,
     progress: Progress,
 ) -> State:
-    """Return the page's state with all results that its scene shows."""
+    """Return the page's state, whose results are computed when its scene reads them."""
     state = state_of(rig, choices)
     if resolution is not None and "graph_resolution" not in choices.settings:
         state.graph_resolution = 0
@@ -118,12 +105,7 @@ def _computed(
     else:
         state.binding = binding or bind(rig, resolution, method=choices.method, progress=progress)
         state.materials = textures or textures_for(rig, choices)
-    if state.panel == "check":
-        state.diagnosis = diagnose(rig, resolution, progress=progress)
-        state.finding = choices.finding or ""
-        if state.finding and state.selected_finding is None:
-            codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
-            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
+    state.finding = choices.finding or ""
     try:
         state.beside_resolution = resolution
     except ValueError:
@@ -132,8 +114,11 @@ def _computed(
             raise ParameterError(
                 f"measures side by side are drawn at a resolution of {allowed}, not {resolution}"
             ) from None
-    compute_wanted(state, RESULTS, progress)
-    return state
+    computed = cast(State, ComputedWhenRead(state, results(), progress))
+    if choices.finding and computed.selected_finding is None:
+        codes = ", ".join(one.code for one in computed.diagnosis.findings) or "none at all"
+        raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
+    return computed
 
 
 def textures_for(rig: Rig, choices: Choices) -> Textures | None:

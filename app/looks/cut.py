@@ -9,17 +9,19 @@ from cutcell_viewers.graph_scene import box_across
 
 from ..document.framing import bounds_of
 from ..document.session import Session
+from ..document.state import State
+from ..messages.received import MoveCut
+from ..messages.sent import Box
 from .character import cut_of
 
 
 def watch(session: Session) -> None:
     """Connect the plane to its handles, which exist while there is a plane."""
-    session.view.listen("cut", lambda message: put(session, message["origin"], message["normal"]))
+    session.view.listen(MoveCut, lambda message: put(session, message.origin, message.normal))
 
 
-def plane_part(session: Session) -> dict[str, Any] | None:
+def plane_part(state: State) -> Box | None:
     """Return the box of the plane that can be dragged, or None."""
-    state = session.state
     sliced = state.panel == "graph" and state.slicing
     is_cut = state.open_panel.cuts and state.cut_across != "off"
     is_shown = state.rig is not None and is_cut and not sliced

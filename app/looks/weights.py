@@ -50,14 +50,11 @@ def scene(state: State, memo: Memo) -> Description:
     return Description({**actors, **paths}, legend=legend)
 
 
-def as_dragged(state: Any) -> Any:
+def as_dragged(state: State) -> State:
     """Return a state with the joints as they are dragged."""
     if state.dragged is None:
         return state
-    snapshot = state.snapshot() if isinstance(state, State) else SimpleNamespace(**vars(state))
-    snapshot.rig, snapshot.binding = state.dragged.rig, state.dragged.binding
-    snapshot.weights = snapshot.binding.weights
-    return snapshot
+    return state.changed(rig=state.dragged.rig, binding=state.dragged.binding)
 
 
 def weights_look(

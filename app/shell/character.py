@@ -1,5 +1,6 @@
 """Choose a demo character, or drop a file."""
 
+from functools import partial
 from typing import Any
 
 from cutcell.runtime.display import shown_name
@@ -25,9 +26,9 @@ def faults(state: State) -> list[str]:
     return [finding.message for finding in severe[:MAX_FAULTS]]
 
 
-def _characters(state: Any) -> dict[str, Any]:
+def _characters(session: Session, state: State) -> dict[str, Any]:
     """Return the characters that can be opened, and the open one."""
-    uploads, paths, _ = state.uploads, state.paths, state.rig
+    uploads, paths, _ = session.uploads, session.paths, state.rig
     # A menu without its value would open the first demo; one whose value stays keeps its name.
     now = state.demo or (OWN if paths is None and not uploads.key else f"~{uploads.key}")
     listed = uploads.offered()
@@ -65,6 +66,8 @@ def _drop(session: Session) -> FileDrop:
     return FileDrop(receiver(session), hint=HINT, margin=ui.GAP, **ui.WIDE)
 
 
-CHARACTER = ui.section(
-    "", ui.select("", "Character", act=_open, shows=_characters), ui.caption(about), _drop, top=16
-)
+def _choice(session: Session) -> ui.Control:
+    return ui.select("", "Character", act=_open, shows=partial(_characters, session))
+
+
+CHARACTER = ui.section("", _choice, ui.caption(about), _drop, top=16)

@@ -3,8 +3,8 @@
 import cutcell
 from cutcell.io import binary_ending
 
-from ..document.loading import edits_in
 from ..document.method import effective, method_of
+from ..document.opening import edits_in
 from ..document.session import Session
 from ..editing.correct.commands import file_name, stored
 from ..files.reading import main_file
@@ -42,7 +42,7 @@ def recipe_of(session: Session) -> Recipe | None:
     if state.rig is None or state.bare:
         state.message = ("info", "There are no weights to compute yet.")
         return None
-    if state.repair is not None and state.repair.after is state.rig:
+    if state.repair is not None and state.repair.codes:
         text = "The mesh was repaired. Export the GLB, open it, and copy then."
         state.message = ("info", text)
         return None
@@ -50,7 +50,7 @@ def recipe_of(session: Session) -> Recipe | None:
     file = main_file(paths).name if paths else f"{stem_of(session)}.glb"
     return Recipe(
         state.rig,
-        session.uploads.listed.get(session.character[1:], file),
+        session.uploads.listed.get(session.source[1:], file),
         state.demo,
         cutcell.Method(**effective(method_of(state))),
         state.edits,

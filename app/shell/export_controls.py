@@ -13,6 +13,7 @@ from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.runtime.display import count
 
+from ..document.document import applied
 from ..document.session import Session
 from ..document.state import State
 from ..editing.compute.stack import vertices_of
@@ -47,7 +48,9 @@ def changed_rows(state: State) -> dict[str, int] | None:
     None where the file has no weights.
     """
     rig, binding = state.rig, state.binding
-    file_weights = rig.weights if state.repair is None else state.repair.before.weights
+    file_weights = rig.weights
+    if state.repair is not None and state.repair.codes:
+        file_weights = applied(state.own, None, state.edits).weights
     if file_weights is None or file_weights.shape != binding.weights.shape:
         return None
     differs = _rows_differ(binding.weights, file_weights)
@@ -93,8 +96,7 @@ def _described(state: State) -> str:
         moved = any(one.position is not None for one in edits.joints.values())
         changed = ["weights"]
         changed += ["skeleton"] if moved or edits.structural else []
-        repair = state.repair
-        changed += ["mesh"] if repair and repair.before.mesh is not repair.after.mesh else []
+        changed += ["mesh"] if rig.mesh is not state.own.mesh else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "A new GLB: mesh, skeleton, weights, clips and base colours."

@@ -3,6 +3,7 @@
 import functools
 import weakref
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -16,8 +17,8 @@ from cutcell_assets import DEMOS
 from cutcell_viewers.description import Actor
 
 from ..derive.jobs import Gate, on_its_thread
-from ..document import arrival
-from ..document.loading import load_demo, load_files
+from ..document import loading
+from ..document.opening import Request
 from ..document.session import Session
 from ..features.flat.flat_scene import flat_scene
 from ..features.inspector.card import inspector
@@ -73,25 +74,19 @@ def page(
     if query == "notes=":
         return notes(session)
     first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
-    arrival.choose(session, query, first)
+    loading.choose(session, query, first)
     if opened is not None and not query:
         session.state.panel = "pairs"
     view: Any = session.view
     result = layout(session, greeting=path is None and opened is None and not query)
     document.on_session_destroyed(functools.partial(_close, session))
 
-    def fallback() -> None:
-        if path is None:
-            if query or opened is not None:
-                load_demo(session, first)
-            else:
-                arrival.show_first_demo(session, first)
-        else:
-            load_files(session, [path])
-
+    request = Request("~", paths=[path]) if path is not None else Request(f"demo {first}")
+    if path is None and not query and opened is None:
+        request = replace(request, arrival={"playing": True})  # in the colours of its weights
     # Nothing is computed until the browser has opened its websocket.
     later = session.work.later
-    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, fallback)))
+    view.when_seen(lambda: later(lambda: loading.arrive(session, query, request)))
     return result
 
 
@@ -137,7 +132,7 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
         sizing_mode="stretch_both",
         margin=0,
         styles={"position": "relative"},
-        stylesheets=[style("stage_place")],
+        stylesheets=[style("page/stage_place")],
     )
     main = pmui.Column(
         *([Welcome(session, sizing_mode="stretch_width")] if greeting else []),
@@ -155,7 +150,7 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
         sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),
         main=[main],
         busy_indicator=None,
-        raw_css=[style("loader")],
+        raw_css=[style("page/loader")],
         theme_config=THEME,
         sx=PAGE_STYLE,
         favicon=FAVICON,

@@ -166,7 +166,7 @@ def messages(session: Session) -> pmui.Column:
     state.param.watch(update, ["message", "binding", "built_graph", "step"])
     alert.param.watch(closed, "closed")
     place = ui.column(
-        alert, doors, stylesheets=[style("messages_place")],
+        alert, doors, stylesheets=[style("page/messages_place")],
         css_classes=lambda state: ["beside-lesson"] if state.step >= 0 else [],
     )  # fmt: skip
     return ui.draw(session, place)

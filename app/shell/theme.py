@@ -108,6 +108,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
-    # Height of the open sheet: frontend/mui.js.
+    # Height of the open sheet: frontend/page/mui.js.
     NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

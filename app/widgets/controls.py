@@ -9,7 +9,6 @@ from cutcell.method import OPTIONS
 from cutcell.options import Flag, Whole
 
 from ..document.session import Session
-from .follow import Reader
 from .table import Control, draw
 from .text import as_text, joint_title, unique_names
 
@@ -105,7 +104,7 @@ def pick(
     """Return a menu of names, of which some may be equal.
 
     Names, not indices, are its values: an index that stays would keep the name that it had.
-    `names` and `index` are functions of a `Reader`; `act` is called with the session and the index
+    `names` and `index` are functions of the state; `act` is called with the session and the index
     of the one that a person chooses.
     """
 
@@ -114,7 +113,7 @@ def pick(
         return {"options": titles, "value": titles[index(state)] if titles else None}
 
     def chosen(session: Session, title: str) -> None:
-        act(session, unique_names(names(Reader(session))).index(title))
+        act(session, unique_names(names(session.state)).index(title))
 
     return select("", label, act=chosen, shows=shows, **options)
 

@@ -15,7 +15,7 @@ class FileDrop(JSComponent):
     label = param.String("Drop a character here, or browse")
     hint = param.String("")
 
-    _esm = script("file_drop")
+    _esm = script("widgets/file_drop")
 
     def __init__(self, receiver: Receiver, **params: Any) -> None:
         super().__init__(**params)

@@ -1,15 +1,16 @@
-"""Functions of the state that are called again whenever what they read of it changes."""
+"""Widgets that are updated whenever what they show of the state changes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Set
 from dataclasses import dataclass
 from functools import cache, partial
-from inspect import getattr_static
 from typing import Any
 
 from panel.io import hold
 
+from ..derive.engine import WIDGETS
+from ..derive.reading import view_of
 from ..document.session import Session
 from ..document.state import State
 
@@ -20,32 +21,9 @@ def names_of(kind: type[State]) -> frozenset[str]:
     return frozenset(kind.param)
 
 
-class Reader:
-    """A session and its state as one object, which notes the parameters that are read."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-        self.names: set[str] = set()
-
-    @property
-    def state(self) -> Reader:
-        """The state, for functions that take a session."""
-        return self
-
-    def __getattr__(self, name: str) -> Any:
-        state = self.session.state
-        if name in names_of(type(state)):
-            self.names.add(name)
-            return getattr(state, name)
-        attribute = getattr_static(type(state), name, None)
-        if isinstance(attribute, property) and attribute.fget is not None:
-            return attribute.fget(self)
-        return getattr(state if hasattr(state, name) else self.session, name)
-
-
 @dataclass(eq=False)
 class Follower:
-    """A function of a `Reader`, what is done with its value, and the names that it read last.
+    """A function of the state, what is done with its value, and the names that it read last.
 
     Changes of parameters in `late` are followed only after a pause: the view comes first. When its
     owner runs again, it ends.
@@ -73,7 +51,7 @@ class Followers:
         self._all: list[Follower] = []
         self._missed: Set[str] = frozenset()
         self._names = names_of(type(session.state))
-        session.state.param.watch(self._changed, list(self._names))
+        session.engine.follow(self._changed, WIDGETS)
 
     def add(self, one: Follower) -> Any:
         """Add a follower, and return its function's value; it has not acted yet."""
@@ -85,23 +63,24 @@ class Followers:
         self._all = [one for one in self._all if not one.is_owned_by(owner)]
 
     def _read(self, one: Follower) -> Any:
-        reader = Reader(self.session)
-        value = one.function(reader)
-        one.names = reader.names
+        view = view_of(self.session.state)
+        value = one.function(view)
+        one.names = view.read_names
         return value
 
     def _run(self, one: Follower) -> None:
         if one in self._all:
             one.act(self._read(one))
 
-    def _changed(self, *events: Any) -> None:
+    def _changed(self, names: Set[str], is_reset: bool) -> None:
         # A parameter is triggered where nothing came of a choice: every widget is reset.
-        is_reset = any(event.type == "triggered" for event in events)
-        names = self._names if is_reset else self._missed | {event.name for event in events}
+        names = self._names if is_reset else self._missed | names
         is_seen = self._panel in ("", self.session.state.panel)
         self._missed = frozenset() if is_seen else names
+        if not is_seen:
+            return
         with hold():
-            for one in [*self._all] if is_seen else ():
+            for one in [*self._all]:
                 changed = names & one.names
                 if changed and changed <= one.late:
                     self.session.work.after_a_pause(partial(self._run, one), str(id(one)))

@@ -10,13 +10,22 @@ from typing import Any
 
 from panel.custom import JSComponent
 
+from ..messages.reading import read
+from ..messages.received import Message
+
 FOLDER = Path(__file__).parents[1] / "frontend"
+
+
+def names(suffix: str) -> list[str]:
+    """Return the files with a suffix, as paths from the folder."""
+    return sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob(f"*{suffix}"))
 
 
 def _version() -> str:
     """Return a hash of all scripts and styles."""
-    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
-    content = b"".join(path.name.encode() + path.read_bytes() for path in files)
+    content = b"".join(
+        name.encode() + (FOLDER / name).read_bytes() for name in names(".js") + names(".css")
+    )
     return hashlib.sha256(content).hexdigest()[:12]
 
 
@@ -39,10 +48,9 @@ export async function render(given) {{
 
 def head() -> str:
     """Return what the page's head needs: all modules, and what runs before Panel draws anything."""
-    names = sorted(path.name for path in FOLDER.glob("*.js"))
     # A browser fetches them at once, while the page is still loading.
-    links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
-    return f'{links}<script type="module" src="{ADDRESS}/panel.js"></script>'
+    links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names(".js"))
+    return f'{links}<script type="module" src="{ADDRESS}/common/panel.js"></script>'
 
 
 def style(name: str) -> str:
@@ -50,7 +58,17 @@ def style(name: str) -> str:
     return (FOLDER / f"{name}.css").read_text(encoding="utf-8")
 
 
-class Clickable(JSComponent):
+class Widget(JSComponent):
+    """A widget of the page's own, which receives the messages of its script."""
+
+    def _handle_msg(self, data: dict[str, Any]) -> None:
+        self.receive(read(data))
+
+    def receive(self, message: Message) -> None:
+        """Do what a message says; ignore those of other widgets."""
+
+
+class Clickable(Widget):
     """A widget of the page's own that is clicked, as a button is."""
 
     def __init__(self, **params: Any) -> None:

@@ -1,9 +1,8 @@
 """A short list of things that can be chosen, each with a number and a bar."""
 
-from typing import Any
-
 import param
 
+from ..messages.received import Message, PickRow, PointAtRow
 from .modules import Clickable, script
 
 
@@ -16,11 +15,12 @@ class Rows(Clickable):
     points = param.Boolean(False, doc="Whether the browser reports that row.")
     label = param.String("", doc="Name of the list for a screen reader.")
 
-    _esm = script("rows")
+    _esm = script("tables/rows")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        row = int(data["row"])
-        if data.get("type") == "row-point":
-            self.pointed = row if 0 <= row < len(self.rows) else -1
-        elif 0 <= row < len(self.rows):
-            self.click(row)
+    def receive(self, message: Message) -> None:
+        """Note the row under the pointer; report one that is clicked."""
+        match message:
+            case PointAtRow(row):
+                self.pointed = row if 0 <= row < len(self.rows) else -1
+            case PickRow(row) if 0 <= row < len(self.rows):
+                self.click(row)

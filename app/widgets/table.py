@@ -10,7 +10,7 @@ from typing import Any
 from panel.viewable import Viewable
 
 from ..document.session import Session
-from .follow import Follower, Followers, Reader
+from .follow import Follower, Followers
 
 
 class Control:
@@ -25,9 +25,9 @@ class Control:
     act : callable, optional
         Called with the session and the value that a person chooses, or the event of a button.
     content : sequence or callable
-        Rows inside a group, or a function of a `Reader` that returns them.
+        Rows inside a group, or a function of the state that returns them.
     shows : callable, optional
-        Function of a `Reader` that returns several options.
+        Function of the state that returns several options.
     late : collection of str
         See `Follower`.
     watched : str
@@ -37,7 +37,7 @@ class Control:
     declared : callable, optional
         Function of the parameter that returns options of the widget besides its label.
     **options
-        Options of the widget. A function is called with a `Reader`, again whenever what it reads
+        Options of the widget. A function is called with the state, again whenever what it reads
         changes, and returns the option's value.
     """
 
@@ -116,7 +116,7 @@ def _connect(session: Session, widget: Any, row: Any) -> None:
     """Connect a widget to its parameter or action."""
 
     def chosen(event: Any) -> None:
-        shown = {**row.fixed, **row.shown(Reader(session))}
+        shown = {**row.fixed, **row.shown(session.state)}
         if event.new not in (None, shown["value"]):  # else nobody chose it
             row.act(session, event.new)
 

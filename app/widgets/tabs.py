@@ -13,4 +13,4 @@ class Tabs(JSComponent):
     tabs = param.List([], doc="(id, title, what its SVG of 24 by 24 units holds) of each.")
     label = param.String("Panels", doc="What the whole strip is called to a screen reader.")
 
-    _esm = script("tabs")
+    _esm = script("widgets/tabs")

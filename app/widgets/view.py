@@ -1,7 +1,7 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar, Unpack
 
 import param
 from panel.custom import JSComponent
@@ -12,11 +12,17 @@ from cutcell_viewers.description import Description
 from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
+from ..messages.reading import read
+from ..messages.received import CameraMoved, Message, Ready, Time
+from ..messages.sent import ToBrowser
 from .changes import changes
 from .modules import script
 
 ACTORS = frozenset({"actors", "images", "bones", "pose", "clip"})
 """Parts of a scene that a browser needs only where it draws them itself."""
+
+
+M = TypeVar("M", bound=Message)
 
 
 class SceneView(JSComponent):
@@ -37,7 +43,7 @@ class SceneView(JSComponent):
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
     _rename = {"window_width": None, "dark": None}  # noqa: RUF012
-    _esm = script("view")
+    _esm = script("view/view")
 
     def __init__(self, **params: Any) -> None:
         super().__init__(**params)
@@ -57,9 +63,9 @@ class SceneView(JSComponent):
         self._sent = Description()
         self._next = Description()
         self._sent_arrays: set[str] = set()
-        self._listeners: dict[str, Callable[[dict[str, Any]], Any]] = {}
+        self._listeners: dict[type[Message], Callable[[Any], Any]] = {}
 
-    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+    def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
         self._listeners[kind] = act
 
@@ -69,15 +75,16 @@ class SceneView(JSComponent):
         if self._is_visible:
             self._begin()
 
-    def present(self, description: Description) -> None:
-        """Show a description."""
+    def present(self, description: Description, **parts: Any) -> None:
+        """Show a description, and parts of the view that belong to it, in one message."""
         self._next = description
+        self._parts.update(parts)
         if self._ready:
-            self._send(changes(self._sent, description, self._sent_arrays))
+            self._send({**changes(self._sent, description, self._sent_arrays), **parts})
             self._sent = description
 
-    def send(self, **parts: Any) -> None:
-        """Send the parts of the view that are no actors: see `shell/view_parts.py`.
+    def send(self, **parts: Unpack[ToBrowser]) -> None:
+        """Send the parts of the view that are no actors.
 
         The last value of each is kept, for a browser that comes later.
         """
@@ -93,11 +100,11 @@ class SceneView(JSComponent):
         """Send a file to the browser, which saves it."""
         self._send_msg({"download": {"name": name, "content": content}})
 
-    def answer(self, **message: Any) -> None:
+    def answer(self, **message: Unpack[ToBrowser]) -> None:
         """Answer a request of the browser; the answer is not sent again to a new one."""
         self._send_msg(message)
 
-    def _send(self, message: dict[str, Any]) -> None:
+    def _send(self, message: Mapping[str, Any]) -> None:
         if not message:
             return
         if self._pictures:
@@ -106,31 +113,38 @@ class SceneView(JSComponent):
         self._send_msg({"id": self._count, **message})
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
-        kind = data.get("type")
         answer = None if self.receiver is None else self.receiver.answer(data)
         if answer is not None:
             self._send_msg({"upload": answer})
-        if kind == "ready":
-            self._ready = True
-            self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
-            self.calm = bool(data.get("calm", False))
-            self.window_width = int(data.get("width", 0))
-            self._pictures = bool(data.get("pictures", False))
-            self._sent_arrays.clear()
-            first = {"lights": LIGHTS, **changes(Description(), self._next, self._sent_arrays)}
-            self._send({**first, **self._parts})
-            self._sent = self._next
-            self._begin()
-        elif kind in self._listeners:
-            self._listeners[kind](data)
-        elif kind == "time":
-            self.time = float(data["time"])
-        elif kind == "camera":
-            self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
-            self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
-            self.page_height = min(max(float(data.get("height", self.page_height)), 100.0), 4000.0)
-            self.at_home = bool(data.get("home", False))
-            self.on_camera()
+            return
+        match read(data):
+            case Ready() as ready:
+                self._begin_anew(ready)
+            case Time(time):
+                self.time = time
+            case CameraMoved() as moved:
+                self._look(moved)
+            case message if type(message) in self._listeners:
+                self._listeners[type(message)](message)
+
+    def _begin_anew(self, ready: Ready) -> None:
+        """Send everything to a browser that has just come."""
+        self._ready = True
+        self.dark = {"1": True, "0": False}.get(str(ready.dark))
+        self.calm, self._pictures = ready.calm, ready.pictures
+        self.window_width = ready.width
+        self._sent_arrays.clear()
+        first = {"lights": LIGHTS, **changes(Description(), self._next, self._sent_arrays)}
+        self._send({**first, **self._parts})
+        self._sent = self._next
+        self._begin()
+
+    def _look(self, moved: CameraMoved) -> None:
+        self.camera = Camera(moved.position, moved.focal_point)
+        self.aspect = min(max(moved.aspect or self.aspect, 0.3), 4.0)
+        self.page_height = min(max(moved.height or self.page_height, 100.0), 4000.0)
+        self.at_home = moved.home
+        self.on_camera()
 
     def _begin(self) -> None:
         self._is_visible = True

@@ -1,9 +1,8 @@
 """A table of numbers that is sorted by its headings, with cells that can be edited."""
 
-from typing import Any
-
 import param
 
+from ..messages.received import Message, PickBars
 from .modules import Clickable, script
 
 
@@ -18,10 +17,11 @@ class WeightsTable(Clickable):
     content = param.Dict({}, doc="The table; empty for none.")
     label = param.String("Weights", doc="Name of the table for a screen reader.")
 
-    _esm = script("weights_table")
+    _esm = script("tables/weights_table")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        self.click(data)
+    def receive(self, message: Message) -> None:
+        """Report what is done with the table."""
+        self.click(message)
 
 
 class Histogram(Clickable):
@@ -31,9 +31,10 @@ class Histogram(Clickable):
     chosen = param.List([], doc="First and last chosen bar; empty for none.")
     label = param.String("Histogram", doc="Name for a screen reader.")
 
-    _esm = script("histogram")
+    _esm = script("tables/histogram")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        first, last = int(data["first"]), int(data["last"])
-        if 0 <= first <= last < len(self.bars):
-            self.click((first, last))
+    def receive(self, message: Message) -> None:
+        """Report the bars that are chosen."""
+        match message:
+            case PickBars(first, last) if 0 <= first <= last < len(self.bars):
+                self.click((first, last))

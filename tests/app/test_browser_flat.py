@@ -91,8 +91,8 @@ def test_a_phone_with_reduced_motion(browser, url):
 
 SENTENCE = """async (address) => {
   const at = (name) => new URL(`${address}/${name}.js`, document.baseURI).href
-  const [{sentence}, {stylesheet}] = await Promise.all([at("sentence"), at("styles")].map(
-    (one) => import(one)))
+  const [{sentence}, {stylesheet}] = await Promise.all(
+    [at("lesson/sentence"), at("common/styles")].map((one) => import(one)))
   window.chosen = []
   const stops = Array.from({length: 101}, (_, i) => [i / 100, String(i / 100)])
   const sliders = {alpha: {value: 0.5, label: "Smoothness α", stops}}
@@ -101,7 +101,7 @@ SENTENCE = """async (address) => {
   window.slid = (value) => show({alpha: {...sliders.alpha, value}})
   const host = document.body.appendChild(document.createElement("div"))
   host.style.cssText = "position: fixed; left: 300px; top: 300px; z-index: 9999"
-  host.append((await stylesheet("sentence.css"))(), node)
+  host.append((await stylesheet("lesson/sentence.css"))(), node)
 }"""
 
 

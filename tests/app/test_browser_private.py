@@ -20,7 +20,7 @@ NARROW = ("sheet", "layer")
 
 
 def check(visit, names):
-    missing = visit.page.evaluate(MISSING, [f"{ADDRESS}/mui.js", names])
+    missing = visit.page.evaluate(MISSING, [f"{ADDRESS}/page/mui.js", names])
     sentences = [f"panel-material-ui has no {name} as {part}: see mui.js" for name, part in missing]
     assert not sentences, "\n".join(sentences)
 

@@ -24,9 +24,10 @@ from cutcell import (
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import count
-from cutcell_app.document import arrival, loading, look
+from cutcell_app.document import loading, look
 from cutcell_app.document.address import from_query
-from cutcell_app.document.loading import restore
+from cutcell_app.document.document import put
+from cutcell_app.document.opening import Request
 from cutcell_app.document.recording import query
 from cutcell_app.editing.compute.stack import painted_vertices
 from cutcell_app.editing.correct import commands as correct
@@ -143,8 +144,7 @@ def test_what_cannot_be_is_told_and_not_taken(bound, loop):
     assert not bound.state.edits
     assert not bound.history.can_undo
     alone = to_text(Edits(layers=[Layer(Attached())]))
-    bound.arrival = {"edits": alone}
-    loading.show_rig(bound, arm_rig())
+    loading.show_rig(bound, arm_rig(), edits=alone)
     loop.run_until(lambda: bound.state.binding is not None)
     assert not bound.state.edits
     loading.show_rig(bound, rig.with_weights(None))
@@ -225,7 +225,7 @@ def test_a_persons_file_opens_with_its_own_weights(session, loop, tmp_path):
     correct.choose_file(session, False)
     settled(session, loop)
     address = query(session)
-    arrival.arrive(session, f"?{address}", lambda: loading.load_files(session, session.paths))
+    loading.arrive(session, f"?{address}", Request("~"))
     loop.rest(session)
     assert (state.edits.base, query(session)) == ("computed", address)
     correct.clear(session)
@@ -264,14 +264,12 @@ def test_an_address_brings_them_back(bound, loop):
     settled(bound, loop)
     said = from_query(bound.view.last_sent("address"), bound.state)[1]["edits"]
     assert from_text(said) == ALL
-    bound.arrival = {"edits": said}
-    loading.show_rig(bound, arm_rig())
+    loading.show_rig(bound, arm_rig(), edits=said)
     assert bound.state.edits == ALL
     settled(bound, loop)
     check_bound_as_by_core(bound, arm_rig())
     for wrong in ("nothing", to_text(Edits(joints={"tail": JointEdit(deform=True)}))):
-        bound.arrival = {"edits": wrong}
-        loading.show_rig(bound, arm_rig())
+        loading.show_rig(bound, arm_rig(), edits=wrong)
         loop.rest(bound)
         assert "were not applied" in bound.state.message[1]
         assert not bound.state.edits
@@ -289,13 +287,11 @@ def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
     assert len(to_text(many)) > MAX_IN_ADDRESS > len(said)
     correct.clear(bound)
     settled(bound, loop)
-    bound.arrival = {"edits": said}
-    loading.show_rig(bound, arm_rig())
+    loading.show_rig(bound, arm_rig(), edits=said)
     settled(bound, loop)
     assert bound.state.edits == many
     check_bound_as_by_core(bound, arm_rig())
-    bound.arrival = {"edits": "~gone"}
-    loading.show_rig(bound, arm_rig())
+    loading.show_rig(bound, arm_rig(), edits="~gone")
     loop.rest(bound)
     assert "no longer has them" in bound.state.message[1]
 
@@ -316,7 +312,7 @@ def test_they_are_saved_and_opened(bound, loop, monkeypatch):
 
 def test_going_back_to_a_character_brings_its_edits(session, loop):
     session.state.resolution = 16
-    arrival.arrive(session, "?rig=robot&resolution=16", lambda: None)
+    loading.arrive(session, "?rig=robot&resolution=16")
     loop.run_until(lambda: session.state.binding is not None and not session.work.busy)
     correct.correct_joint(session, 3, deform=False)
     loop.rest(session)
@@ -340,7 +336,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert sum(row["ours"] for row in tree.rows) == pytest.approx(1)
     assert sum(row["file"] for row in tree.rows) == pytest.approx(1)
     assert len({row["color"] for row in tree.rows}) == 3
-    tree._handle_msg({"type": "choose", "joint": 2})
+    tree._handle_msg({"type": "pick", "joint": 2})
     assert bound.state.joint == tree.chosen == 2
     carries, locked, *_ = section.select(pmui.Switch)
     carries.value = False
@@ -367,7 +363,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert radius.value == "0.25"
     next(b for b in section.select(pmui.Button) if b.label == "Reset").clicks += 1
     assert not bound.state.edits
-    restore(bound, {"edits": ALL})
+    put(bound.state, edits=ALL)
     assert gain.value == 0.0
 
 
@@ -445,10 +441,10 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 1 · {first}",
         f"Part 2 · {len(vertices) - first}",
     ]
-    rows._handle_msg({"row": 0})
+    rows._handle_msg({"type": "pick-row", "row": 0})
     loop.rest(session)
     assert "attached" not in way.options.values(), "the body cannot follow itself"
-    rows._handle_msg({"row": 1})
+    rows._handle_msg({"type": "pick-row", "row": 1})
     loop.rest(session)
     assert "attached" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
@@ -470,7 +466,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
     way.value = ""
     assert not session.state.edits
-    rows._handle_msg({"row": 1})
+    rows._handle_msg({"type": "pick-row", "row": 1})
     assert session.state.part is None
 
 

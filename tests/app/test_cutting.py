@@ -44,14 +44,17 @@ def test_a_plane_faces_the_eye(bound):
     np.testing.assert_allclose(cut_of(bound.state).normal, [0, 0.6, 0.8], atol=1e-3)
 
 
-def test_the_handles_are_there_while_there_is_a_plane(bound):
+def test_the_handles_are_there_while_there_is_a_plane(bound, loop):
     state = bound.state
     assert bound.view.last_sent("handles") is None
     state.param.update(panel="graph", cut_axis="y")
+    loop.rest(bound)
     np.testing.assert_allclose(bound.view.last_sent("handles")["box"], bounds_of(state))
     state.slicing = True
+    loop.rest(bound)
     assert bound.view.last_sent("handles") is None
     state.param.update(panel="distance")
+    loop.rest(bound)
     assert bound.view.last_sent("handles") is not None
     state.panel = "weights"
     assert bound.view.last_sent("handles") is None

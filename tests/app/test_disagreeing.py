@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cutcell.editing import Computed
-from cutcell_app.document import arrival, loading
+from cutcell_app.document import loading
 from cutcell_app.document.address import from_query, to_query
 from cutcell_app.editing.correct.commands import choose_file
 from cutcell_app.features.compare import results as comparing
@@ -138,7 +138,7 @@ def test_an_address_with_other_keys_of_regions_is_a_problem(differing, text):
 def test_the_methods_that_are_compared_are_in_the_address_and_can_be_undone(session, loop):
     address = "?rig=robot&panel=compare&resolution=16&methods=now,artist,euclidean"
     pair = "&first_method=euclidean&second_method=artist"
-    arrival.arrive(session, address + pair, lambda: None)
+    loading.arrive(session, address + pair)
     loop.run_until(lambda: session.state.rig is not None)
     state = session.state
     assert disagreeing.pair_of(state) == ("euclidean", "artist")
@@ -147,11 +147,11 @@ def test_the_methods_that_are_compared_are_in_the_address_and_can_be_undone(sess
     assert "second_method=now" in session.view.last_sent("address")
     keys.act(session, "undo")
     assert disagreeing.pair_of(state) == ("euclidean", "artist")
-    visit = session.view._listeners["visit"]  # the browser's Back, to an address without and with
-    visit({"query": address})
+    # The browser's Back, to an address without and with a pair.
+    session.view._handle_msg({"type": "visit", "query": address})
     loop.run_until(lambda: "first_method" not in session.view.last_sent("address"))
     assert disagreeing.pair_of(state) == ("now", "artist")
-    visit({"query": address + pair})
+    session.view._handle_msg({"type": "visit", "query": address + pair})
     loop.run_until(lambda: pair in session.view.last_sent("address"))
     assert disagreeing.pair_of(state) == ("euclidean", "artist")
     comparing.choose(session, "euclidean", False)

@@ -6,7 +6,7 @@ import param
 import pytest
 
 from cutcell.errors import ParameterError
-from cutcell_app.derive.derived import Derived, compute_wanted
+from cutcell_app.derive.derived import ComputedWhenRead, Derived
 from cutcell_app.derive.engine import Engine
 from cutcell_app.derive.work import Work
 
@@ -333,10 +333,15 @@ def test_a_closed_page_computes_nothing_any_more():
     assert (page.state.doubled, page.hooks, computed) == (None, [], [])
 
 
-def test_without_an_engine_all_that_is_wanted_is_computed_in_order():
-    state = PageState(a=2)
-    compute_wanted(state, (doubled(), total(), powers(wanted=lambda state, part: part == 3)))
-    assert (state.doubled, state.total, state.powers) == (4, 5, {3: 8})
+def test_without_an_engine_results_are_computed_when_they_are_read_if_they_are_wanted():
+    results = doubled(), total(), powers(wanted=lambda state, part: part == 3)
+    view = ComputedWhenRead(PageState(a=2), results)
+    assert computed == []
+    assert (view.total, view.doubled, view.powers) == (5, 4, {3: 8})
+    assert view.total == 5
+    assert computed == [2]
+    given = ComputedWhenRead(PageState(a=2, doubled=7), results)
+    assert given.total == 8, "what is there stays"
 
 
 def test_progress_of_reported_results_is_shown_and_goes():

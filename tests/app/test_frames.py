@@ -35,7 +35,7 @@ def test_what_is_no_origin_is_refused(origin):
 
 def test_only_one_module_uses_the_browsers_storage():
     # It raises in frames of other sites and in sandboxes.
-    scripts = [path for path in FOLDER.glob("*.js") if path.name != "storage.js"]
+    scripts = [path for path in FOLDER.rglob("*.js") if path.name != "storage.js"]
     users = [path.name for path in scripts if re.search("(local|session)Storage", path.read_text())]
     assert users == []
 

@@ -87,11 +87,11 @@ def test_a_host_that_this_server_is_not_is_refused(here, begun):
 
 
 def test_scripts_are_served_and_nothing_beside_them(here):
-    answer = here.get(f"/{ADDRESS}/view.js")
+    answer = here.get(f"/{ADDRESS}/view/view.js")
     assert answer.status == 200
     assert "javascript" in answer.getheader("Content-Type")
-    assert answer.text == (FOLDER / "view.js").read_text(encoding="utf-8")
-    assert here.get(f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
+    assert answer.text == (FOLDER / "view/view.js").read_text(encoding="utf-8")
+    assert here.get(f"/{ADDRESS}/view/view.js", Host=f"rebound.example:{here.port}").status == 421
     absolute = quote(str(FOLDER.parent / "serve.py"))
     for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{absolute}"):
         assert here.get(f"/{ADDRESS}{path}").status in (403, 404)

@@ -5,13 +5,15 @@ from dataclasses import replace
 import pytest
 
 import cutcell
+from cutcell import Edits
 from cutcell.rig import TriangleMesh
 from cutcell_app.derive.jobs import Gate
-from cutcell_app.document import arrival, loading
+from cutcell_app.document import loading
 from cutcell_app.document.address import first_clip, from_query, to_query
-from cutcell_app.document.arrival import GONE
+from cutcell_app.document.document import TOGETHER, Document, History
 from cutcell_app.document.framing import first_joint
-from cutcell_app.document.history import TOGETHER, History
+from cutcell_app.document.loading import GONE
+from cutcell_app.document.opening import Request
 from cutcell_app.document.side_by_side import standard
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.features.check.results import repair
@@ -33,6 +35,10 @@ def upload(session, path):
         {"type": "upload-end"},
     ):
         assert receiver.answer(message) == {"ok": True}
+
+
+def document(**choices):
+    return Document("", None, None, None, Edits(), choices)
 
 
 def said(session):
@@ -89,9 +95,7 @@ def test_what_an_address_says_wrongly_is_named(query):
 
 
 def test_a_link_opens_as_it_was_shared(session, loop):
-    arrival.arrive(
-        session, "?rig=robot&panel=graph&bone=hand.L&resolution=16&kitchen=1", lambda: None
-    )
+    loading.arrive(session, "?rig=robot&panel=graph&bone=hand.L&resolution=16&kitchen=1")
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.demo == "robot"
     assert session.state.rig.skeleton.names[session.state.joint] == "hand.L"
@@ -102,7 +106,7 @@ def test_a_link_opens_as_it_was_shared(session, loop):
 
 def test_a_comparison_opens_as_it_was_shared(session, loop):
     query = "?rig=robot&panel=compare&compare_field=all&methods=voxel,euclidean&minus=euclidean"
-    arrival.arrive(session, query + "&resolution=16&clip=-1", lambda: None)
+    loading.arrive(session, query + "&resolution=16&clip=-1")
     loop.run_until(lambda: len(session.state.compared) == 2, 60)
     state = session.state
     assert (state.methods, state.minus) == (["voxel", "euclidean"], "euclidean")
@@ -119,8 +123,7 @@ def test_a_comparison_opens_as_it_was_shared(session, loop):
 
 def test_a_difference_to_the_files_own_weights_is_shared_without_naming_the_methods(session):
     session.state.resolution = 16
-    session.arrival = {"minus": "artist"}
-    loading.show_rig(session, arm_rig())
+    loading.show_rig(session, arm_rig(), minus="artist")
     assert session.state.methods == ["now", "artist", "euclidean"]
     assert session.state.minus == "artist"
     assert not session.history.can_undo
@@ -128,8 +131,9 @@ def test_a_difference_to_the_files_own_weights_is_shared_without_naming_the_meth
 
 def test_methods_that_a_character_does_not_offer_are_left_out(session):
     session.state.resolution = 16
-    session.arrival = {"methods": ["now", "artist"], "minus": "artist"}
-    loading.show_rig(session, arm_rig().with_weights(None))
+    loading.show_rig(
+        session, arm_rig().with_weights(None), methods=["now", "artist"], minus="artist"
+    )
     assert (session.state.methods, session.state.minus) == (["now", "euclidean"], "")
 
 
@@ -158,7 +162,7 @@ def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tm
     assert f"rig=~{session.uploads.key}" in query
     session.close()
     again = begin(loop)
-    arrival.arrive(again, query, lambda: pytest.fail("it is kept"))
+    loading.arrive(again, query)
     loop.run_until(lambda: again.state.rig is not None)
     assert again.uploads.key == session.uploads.key or again.uploads.key in query
     again.close()
@@ -167,7 +171,7 @@ def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tm
 def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop, tmp_path):
     gate = Gate(loop)
     session = begin(gate)
-    arrival.arrive(session, "?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16", lambda: None)
+    loading.arrive(session, "?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16")
     path = tmp_path / "mine.glb"
     path.write_bytes(demo_path("octopus").read_bytes())
     upload(session, path)
@@ -182,22 +186,28 @@ def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop,
 
 def test_an_address_of_a_file_that_is_gone_says_so(session, loop):
     session.state.resolution = 16
-    arrival.arrive(session, "?rig=~gone", lambda: loading.show_rig(session, arm_rig()))
+    loading.arrive(session, "?rig=~gone&bone=head", Request("demo robot"))
     loop.run_until(lambda: session.state.message is not None)
     assert session.state.message == ("info", GONE)
+    assert session.state.joint == first_joint(session.state.rig), "the bone is of another character"
 
 
 def test_undo_and_redo():
-    history = History({"a": 1, "panel": "x"})
-    history.note({"a": 2, "panel": "x"}, 0)
-    history.note({"a": 3, "panel": "x"}, TOGETHER / 2)  # one drag of a slider
-    history.note({"a": 3, "panel": "y"}, 5)  # going elsewhere is no step
-    history.note({"a": 4, "panel": "y"}, 9)
-    assert history.undo() == {"a": 3, "panel": "y"}
-    assert history.undo() == {"a": 1, "panel": "x"}
-    assert history.undo() is None
-    assert history.redo() == {"a": 3, "panel": "y"}
-    history.note({"a": 7, "panel": "y"}, 20)
+
+    def go(by):
+        history.go(by, history.peek(by))
+        return history.now.choices
+
+    history = History(document(a=1, panel="x"))
+    history.note(document(a=2, panel="x"), 0)
+    history.note(document(a=3, panel="x"), TOGETHER / 2)  # one drag of a slider
+    history.note(document(a=3, panel="y"), 5)  # going elsewhere is no step
+    history.note(document(a=4, panel="y"), 9)
+    assert go(-1) == {"a": 3, "panel": "y"}
+    assert go(-1) == {"a": 1, "panel": "x"}
+    assert history.peek(-1) is None
+    assert go(1) == {"a": 3, "panel": "y"}
+    history.note(document(a=7, panel="y"), 20)
     assert not history.can_redo
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from cutcell.errors import Cancelled
 from cutcell_app.derive.jobs import MAX_UNRESPONSIVE, Gate, on_its_thread
 from cutcell_app.derive.work import Work
 
@@ -52,6 +53,15 @@ def endless(started):
             progress("on and on", 0.5)
 
     return work
+
+
+def test_work_that_stops_by_itself_fails_and_leaves_nothing_running(loop, reports, start):
+    def work(progress):
+        raise Cancelled
+
+    start(work)
+    loop.run_until(lambda: not start.work.busy)
+    assert [(what, type(error)) for what, error, _ in reports] == [("failed", Cancelled)]
 
 
 def test_work_runs_in_another_thread_and_is_told_of_in_this(loop, reports, start):

@@ -18,9 +18,9 @@ from cutcell_app.features.compare.lab.controls import FIELDS, SWEEP, about, plot
 from cutcell_app.features.compare.lab.curves import plot
 from cutcell_app.features.compare.lab.rows import Setting, in_units, number, settings_of
 from cutcell_app.looks.measures import CONVERGED, RESOLUTIONS
+from cutcell_app.shell.session import keys
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.curves import Curves
-from cutcell_app.widgets.follow import Reader
 from cutcell_lab.baselines.measured_distance import error_points
 from cutcell_lab.sweeps import MEASURES
 from tests.app.loop import settled
@@ -59,7 +59,7 @@ def test_the_page_has_the_numbers_of_the_core(bound, loop, option, values):
         for name in MEASURES:
             if name != "seconds":
                 assert getattr(point, name) == getattr(expected, name)
-    rows = table(Reader(bound))["rows"]
+    rows = table(bound.state)["rows"]
     for row, expected in zip(rows, core.points, strict=True):
         numbers = [number(in_units(name, getattr(expected, name))) for name in FIELDS]
         assert row["values"][:-1] == numbers[:-1]
@@ -86,7 +86,7 @@ def test_results_come_one_by_one_and_stay_when_it_is_stopped(bound, loop):
     loop.run_until(lambda: len(bound.state.swept) == 2)
     lab.stop(bound)
     loop.rest(bound)
-    rows = table(Reader(bound))["rows"]
+    rows = table(bound.state)["rows"]
     assert [bool(row["values"][0]) for row in rows] == [True, True, False, False]
     lab.start(bound)
     loop.run_until(lambda: not bound.state.sweeping)
@@ -96,7 +96,7 @@ def test_results_come_one_by_one_and_stay_when_it_is_stopped(bound, loop):
 def test_a_setting_that_fails_says_why(bound, loop):
     points = swept(bound, loop, "resolution", "8,1,many,12")
     assert [bool(point.failed) for point in points.values()] == [False, True, True, False]
-    rows = table(Reader(bound))["rows"]
+    rows = table(bound.state)["rows"]
     assert rows[1]["state"] == "failed"
     assert rows[1]["note"].startswith("Resolution must be")
     assert rows[1]["fixed"]
@@ -111,8 +111,8 @@ def test_a_point_becomes_the_choice_of_the_page_and_is_undone(bound, loop):
     settled(bound, loop)
     assert bound.state.binding.method.resolution == 12
     assert bound.state.swept == before, "the sweep does not depend on the value that is chosen"
-    assert [row["chosen"] for row in table(Reader(bound))["rows"]] == [False, True]
-    loading.revisit(bound, bound.history.undo())
+    assert [row["chosen"] for row in table(bound.state)["rows"]] == [False, True]
+    keys.act(bound, "undo")
     assert bound.state.resolution == 16
     lab.choose(bound, {"max_influences": None})
     assert "does not offer max_influences=None" in bound.state.message[1]
@@ -165,7 +165,7 @@ def points_of(plot):
 
 def test_curves_have_a_point_for_each_value(bound, loop):
     swept(bound, loop, "connectivity", "6,26,1,any")
-    ((plot),) = plots(Reader(bound))
+    ((plot),) = plots(bound.state)
     points, measured = points_of(plot), [p for p in bound.state.swept.values() if not p.failed]
     assert [point["title"] for point in points] == ["6 axes", "26 diagonals", "Any angle"]
     assert [point["text"] for point in points] == [number(one.l1) for one in measured]
@@ -175,9 +175,9 @@ def test_curves_have_a_point_for_each_value(bound, loop):
     assert [p["text"] for p in by_height] == [number(x) for x in sorted(p.l1 for p in measured)]
     widget = draw(bound, SWEEP).select(Curves)[0]
     assert widget.plots == [plot]
-    widget._handle_msg({"type": "point", "id": "26"})
+    widget._handle_msg({"type": "pick-point", "id": "26"})
     assert bound.state.connectivity == 26
-    widget._handle_msg({"type": "point", "id": "27"})
+    widget._handle_msg({"type": "pick-point", "id": "27"})
     assert bound.state.connectivity == 26
 
 
@@ -214,7 +214,7 @@ def test_errors_of_distances_are_less_at_a_higher_resolution(bound, loop):
     finest = {one.choices["connectivity"]: one.values["error"] for one in settings}
     coarsest = {one.choices["connectivity"]: one.values["error"] for one in settings[::-1]}
     assert finest["any"] < coarsest["any"]
-    error, seconds = plots(Reader(bound))
+    error, seconds = plots(bound.state)
     assert [curve["name"] for curve in error["curves"]][-1] == "Any angle"
     assert [len(curve["points"]) for curve in seconds["curves"]] == [len(RESOLUTIONS)] * 3
     name, _, lines = saved(bound)
@@ -239,8 +239,8 @@ def test_a_setting_is_seen_over_the_computed_base(bound, loop):
     state.message = None
     lab.choose(bound, {"max_influences": 2})
     assert state.message is None
-    loading.revisit(bound, bound.history.undo())
-    loading.revisit(bound, bound.history.undo())
+    keys.act(bound, "undo")
+    keys.act(bound, "undo")
     assert (state.edits.base, state.max_influences) == ("file", 4)
 
 

@@ -11,7 +11,7 @@ import cutcell
 from cutcell import Computed, Edits, Filled, FromFile, Layer, Locked, Mask, Painted, Smoothed
 from cutcell.editing.layers import apply_layers
 from cutcell.editing.layers.sources import RigSources
-from cutcell_app.document.history import History
+from cutcell_app.document.document import Document, History
 from cutcell_app.editing.compute import stack
 from tests.viewers.arm import arm_rig
 
@@ -88,28 +88,33 @@ def weights_of():
     return lambda edits: apply_layers(binding.weights, edits.stack(), sources)
 
 
+def documented(edits):
+    return Document("", None, None, None, edits, {})
+
+
 @settings(max_examples=60)
 @given(st.lists(ACTIONS, max_size=12))
 def test_any_sequence_is_undone_and_redone_to_the_bit(weights_of, actions):
     edits = Edits()
-    history, seen = History({"edits": edits}), [(edits.to_json(), weights_of(edits))]
+    history, seen = History(documented(edits)), [(edits.to_json(), weights_of(edits))]
     for time, (name, *values) in enumerate(actions):
         new = act(edits, name, *values)
         if new == edits:  # it is no step
             continue
         edits = new
-        history.note({"edits": edits}, 10.0 * time)
+        history.note(documented(edits), 10.0 * time)
         weights = weights_of(edits)
         assert (weights >= 0).all()
         np.testing.assert_allclose(weights.sum(axis=1), 1)
         seen.append((edits.to_json(), weights))
-    for step, expected in ((history.undo, seen[-2::-1]), (history.redo, seen[1:])):
+    for by, expected in ((-1, seen[-2::-1]), (1, seen[1:])):
         for text, weights in expected:
-            then = step()["edits"]
+            history.go(by, history.peek(by))
+            then = history.now.edits
             assert then.to_json() == text
             assert Edits.from_json(text) == then
             np.testing.assert_array_equal(weights_of(then), weights)
-        assert step() is None
+        assert history.peek(by) is None
 
 
 def test_the_file_is_not_hidden_by_the_reach_of_joints():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell.errors import FileError
-from cutcell_app.document import arrival, loading
+from cutcell_app.document import loading
 from cutcell_app.document.selection import selected
 from cutcell_app.editing.brush.strokes import select
 from cutcell_app.features.checked import read_checked
@@ -175,7 +175,7 @@ def test_numbers_in_the_text_and_buttons_set_choices_of_the_step_alone(session, 
 
 def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
     query = f"?panel=learn&step={DIAMONDS + 1}"
-    arrival.arrive(session, query, lambda: pytest.fail("the step has a character"))
+    loading.arrive(session, query)
     state = session.state
     loop.run_until(lambda: state.binding is not None)
     assert (state.step, state.demo, state.panel) == (DIAMONDS, "biped", "learn")
@@ -185,7 +185,7 @@ def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
 
 
 def test_a_link_with_an_answer_shows_the_answer_and_starts_the_presentation(session, loop):
-    arrival.arrive(session, "?step=2&answer=0.3&stage&resolution=16", lambda: None)
+    loading.arrive(session, "?step=2&answer=0.3&stage&resolution=16")
     state = session.state
     loop.run_until(lambda: state.binding is not None)
     assert (state.answers, state.staged) == ({1: 0.3}, True)
@@ -196,7 +196,7 @@ def test_a_link_with_an_answer_shows_the_answer_and_starts_the_presentation(sess
 
 @pytest.mark.parametrize("query", ["step=2&answer=x", "step=99", "step=0", "step=two", "stage=2"])
 def test_a_link_to_a_step_or_answer_that_there_is_not_says_so(session, loop, query):
-    arrival.arrive(session, f"?{query}&rig=robot&resolution=16", lambda: None)
+    loading.arrive(session, f"?{query}&rig=robot&resolution=16")
     loop.run_until(lambda: session.state.binding is not None)
     assert query.rpartition("&")[2] in session.state.message[1]
     assert not session.state.answers
@@ -209,7 +209,7 @@ def test_a_link_of_a_person_in_the_lesson_brings_back_what_they_made_of_it(sessi
     session.state.param.update(connectivity="any", panel="learn", resolution=16)
     query = session.view.last_sent("address")
     again = begin(loop)
-    arrival.arrive(again, query, lambda: None)
+    loading.arrive(again, query)
     loop.run_until(lambda: again.state.binding is not None)
     assert (again.state.step, again.state.panel, again.state.resolution) == (DIAMONDS, "learn", 16)
     assert (again.state.connectivity, again.state.answers) == ("any", session.state.answers)
@@ -291,7 +291,7 @@ def test_joints_of_a_vertex_lie_on_the_curve_of_the_falloff(session, loop, alpha
 
 def test_a_button_opens_another_character_and_leaving_restores_the_first(session, loop):
     state = session.state
-    arrival.arrive(session, "?rig=robot&panel=weights&resolution=16", lambda: None)
+    loading.arrive(session, "?rig=robot&panel=weights&resolution=16")
     loop.run_until(lambda: state.binding is not None)
     go(session, HOLES)
     loop.rest(session)
@@ -330,9 +330,7 @@ def test_two_steps_at_once_show_the_last(session, loop):
 
 def test_leaving_brings_back_the_character_the_choices_the_camera_and_undo(session, loop):
     state = session.state
-    arrival.arrive(
-        session, "?rig=robot&panel=weights&resolution=24&camera=1,2,3,0,1,0", lambda: None
-    )
+    loading.arrive(session, "?rig=robot&panel=weights&resolution=24&camera=1,2,3,0,1,0")
     loop.run_until(lambda: state.binding is not None)
     state.alpha = 0.3
     past = session.history
@@ -348,7 +346,7 @@ def test_leaving_brings_back_the_character_the_choices_the_camera_and_undo(sessi
 
 def test_a_character_that_a_person_opens_in_the_lesson_stays_when_it_is_left(session, loop):
     state = session.state
-    arrival.arrive(session, "?rig=robot&panel=weights&resolution=16", lambda: None)
+    loading.arrive(session, "?rig=robot&panel=weights&resolution=16")
     loop.run_until(lambda: state.binding is not None)
     go(session, CAPE)
     loop.run_until(lambda: state.rig.name == "biped_cape", 60)
@@ -357,18 +355,17 @@ def test_a_character_that_a_person_opens_in_the_lesson_stays_when_it_is_left(ses
     go(session, -1)
     loop.rest(session)
     assert (state.step, state.rig.name) == (-1, "rabbit")
-    assert session.character == "~"
+    assert session.source == "~"
     assert "loading" not in state.stage
 
 
 def test_back_and_forward_return_to_steps_with_their_scenes_and_answers(session, loop):
     """The browser's buttons name an address that the page made, with or without a step."""
     state = session.state
-    visit = session.view._listeners["visit"]
     before = "?rig=robot&panel=weights&bone=hips&resolution=16"
     asked = "?rig=biped_cape&panel=distance&bone=chest&resolution=16&step=12"
     for query, step in ((before, -1), (asked, 11), (f"{asked}&answer=x", 11), (asked, 11)):
-        visit({"query": query})
+        session.view._handle_msg({"type": "visit", "query": query})
         loop.rest(session)
         assert state.rig.name == ("robot" if step < 0 else "biped_cape")
         assert state.step == step
@@ -401,7 +398,7 @@ def test_paint_is_scored_by_what_the_branch_moves(session, loop):
 @pytest.mark.parametrize("way", ["next", "leave", "back", "unanswered"])
 def test_paint_stays_on_its_step(session, loop, way):
     state = session.state
-    arrival.arrive(session, "?rig=biped&panel=weights&resolution=16", lambda: None)
+    loading.arrive(session, "?rig=biped&panel=weights&resolution=16")
     loop.rest(session)
     before = np.arange(len(state.rig.mesh.vertices)) < 9
     select(session, before)
@@ -417,7 +414,7 @@ def test_paint_stays_on_its_step(session, loop, way):
     if way == "leave":
         go(session, -1)
     elif way == "back":
-        session.view._listeners["visit"]({"query": address})
+        session.view._handle_msg({"type": "visit", "query": address})
     else:
         go(session, FALLOFF)
     loop.rest(session)

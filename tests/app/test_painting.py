@@ -41,13 +41,17 @@ def painter(bound, loop, monkeypatch):
     return bound
 
 
+def paint(session, **parts):
+    """Send a part of a stroke."""
+    session.view._handle_msg({"type": "paint", **parts})
+
+
 def stroke(session, *vertices, **more):
     """Paint over some vertices as the browser does: in pieces."""
-    act = session.view._listeners["brush"]
     for place, vertex in enumerate(vertices):
         point = [vertex, vertex, vertex, 1, 0, 0]
         last = place == len(vertices) - 1
-        act({"points": point, "first": place == 0, "done": last, "mode": None, **more})
+        paint(session, points=point, first=place == 0, done=last, **more)
 
 
 @pytest.mark.parametrize("mode", ["add", "subtract", "replace", "smooth"])
@@ -132,15 +136,14 @@ def test_colours_of_a_few_vertices_are_those_of_the_whole(painter, shown):
 
 def test_a_stroke_that_is_cancelled_or_changes_nothing_leaves_nothing(painter, loop):
     state = painter.state
-    act = painter.view._listeners["brush"]
     steps = painter.history.now
-    act({"points": [MIDDLE] * 3 + [1, 0, 0], "first": True, "done": False})
-    act({"cancelled": True})
+    paint(painter, points=[MIDDLE] * 3 + [1, 0, 0], first=True)
+    paint(painter, cancelled=True)
     back = painter.answers[-1]["painted"]
     assert np.array_equal(back["scalars"], state.weights[back["vertices"], 2].astype(np.float32))
-    act({"points": [], "done": True})
+    paint(painter, points=[], done=True)
     assert painter.answers[-1] == {"painted": {"gone": True}}
-    act({"points": [10**6] * 3 + [1, 0, 0], "first": True, "done": True})
+    paint(painter, points=[10**6] * 3 + [1, 0, 0], first=True, done=True)
     assert not state.edits
     state.brush_mode = "replace"
     state.brush_value = 0.0
@@ -198,6 +201,7 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
     state.playing = False
     assert painter.view.last_sent("brush") is not None
     state.panel = "graph"
+    loop.rest(painter)
     assert painter.view.last_sent("brush") is None
 
 
@@ -212,8 +216,7 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
     assert len(to_text(held)) > MAX_IN_ADDRESS
     said = from_query(painter.view.last_sent("address"), state)[1]["edits"]
     assert len(said) < MAX_IN_ADDRESS
-    painter.arrival = {"edits": said}
-    loading.show_rig(painter, arm_rig())
+    loading.show_rig(painter, arm_rig(), edits=said)
     settled(painter, loop)
     assert state.edits == held
     check_bound_as_by_core(painter, arm_rig())
@@ -251,7 +254,7 @@ def test_keys_and_switches(painter, loop):
     assert (state.weights_shown, state.weights_of, state.joint_handle) == ("bone", "ours", False)
     state.joint_handle = True
     assert not state.brush
-    assert not {"brush", "brush_radius"} & painter.history.now.keys()
+    assert not {"brush", "brush_radius"} & painter.history.now.choices.keys()
 
 
 def test_the_section_says_what_is_painted(painter, loop):
@@ -300,7 +303,7 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     distance = np.linalg.norm(mesh.vertices - joint, axis=1)
     vertex = int(np.where(state.weights[:, state.joint] < 0.5, distance, np.inf).argmin())
     point = [vertex, vertex, vertex, 1, 0, 0]
-    session.view._listeners["brush"]({"points": point, "first": True, "done": True})
+    paint(session, points=point, first=True, done=True)
     loop.rest(session)
     x = state.rig.mesh.vertices[painted_vertices(state.edits), 0]
     assert (x > 0).any()
@@ -347,11 +350,10 @@ def test_ctrl_takes_away_from_the_selection_and_a_cancelled_stroke_leaves_it(pai
     state.brush_mode = "select"
     stroke(painter, MIDDLE)
     chosen = selected(state).copy()
-    act = painter.view._listeners["brush"]
     point = [MIDDLE + 8, MIDDLE + 8, MIDDLE + 8, 1, 0, 0]
-    act({"points": point, "first": True, "done": False, "mode": None})
+    paint(painter, points=point, first=True)
     assert selected(state).sum() > chosen.sum()
-    act({"cancelled": True})
+    paint(painter, cancelled=True)
     assert np.array_equal(selected(state), chosen)
     stroke(painter, MIDDLE, mode="subtract")
     settled(painter, loop)

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +14,7 @@ import cutcell
 from cutcell.editing import Edits, Filled, FromFile, JointEdit, Layer, Mask, Painted
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell_app.document import loading
+from cutcell_app.document.document import Repair
 from cutcell_app.document.method import options_of
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.shell.export_code import copy_command, copy_script
@@ -204,7 +204,7 @@ def test_of_several_characters_r_counts_along_the_whole_mesh():
 def test_what_cannot_be_computed_again_is_not_copied(bound):
     state, copied = bound.state, []
     bound.view.answer = lambda copy: copied.append(copy)
-    state.repair = SimpleNamespace(after=state.rig)
+    state.repair = Repair((("duplicate-faces",),), state.rig, {}, ())
     copy_script(bound)
     assert "Export the GLB" in state.message[1]
     state.param.update(repair=None, rig=None)

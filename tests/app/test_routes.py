@@ -23,7 +23,7 @@ ROUTES = {
     ("/?$", "PageHandler"): (ANYONE, "/"),
     ("/ws$", "SocketHandler"): (PAGES, "/ws"),
     (".*%00.*$", "ErrorHandler"): (NOBODY, "/static/%00"),
-    (f"/{ADDRESS}/(.*)$", "ImmutableFiles"): (ANYONE, f"/{ADDRESS}/view.js"),
+    (f"/{ADDRESS}/(.*)$", "ImmutableFiles"): (ANYONE, f"/{ADDRESS}/view/view.js"),
     ("/favicon.ico$", "IcoHandler"): (ANYONE, "/favicon.ico"),
     ("/static/(?!extensions/)(.*)$", "StaticHandler"): (ANYONE, "/static/js/bokeh.min.js"),
     ("/static/extensions/(.*)$", "MultiRootStaticHandler"): (

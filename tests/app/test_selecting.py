@@ -38,7 +38,7 @@ def some(session, share=0.3):
 
 def hear(session, kind, **message):
     """Send a message as the browser does."""
-    session.view._listeners[kind]({"type": kind, **message})
+    session.view._handle_msg({"type": kind, **message})
 
 
 def test_a_lasso_selects_adds_and_subtracts(bound):
@@ -102,10 +102,10 @@ def test_keys_grow_shrink_and_isolate_the_selection(bound):
 def test_s_chooses_the_strongest_bone(bound):
     state = bound.state
     for vertex in (0, 30, 60):
-        hear(bound, "strongest", vertex=vertex)
+        hear(bound, "pick-strongest", vertex=vertex)
         assert state.joint == state.weights[vertex].argmax()
         assert state.weights_shown == "bone"
-    hear(bound, "strongest", vertex=10**6)
+    hear(bound, "pick-strongest", vertex=10**6)
     assert state.joint == state.weights[60].argmax()
 
 
@@ -387,23 +387,23 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
     total, mean = table.content["totals"]
     assert total[1] == round(state.weights[chosen, 1].sum(), 4)
     assert mean[2] == round(state.rig.weights[chosen, 1].mean(), 4)
-    table._handle_msg({"type": "sort", "sort": 1})
+    table._handle_msg({"type": "sort", "column": 1})
     loop.rest(bound)
     assert [row[1] for row in table.content["rows"]] == sorted(state.weights[chosen, 1].round(4))[
         :ROWS
     ]
-    table._handle_msg({"type": "sort", "sort": 0})
+    table._handle_msg({"type": "sort", "column": 0})
     table._handle_msg({"type": "page", "page": 1})
     loop.rest(bound)
     assert [row[0] for row in table.content["rows"]] == np.flatnonzero(chosen)[
         ROWS : 2 * ROWS
     ].tolist()
     vertex = table.content["rows"][0][0]
-    table._handle_msg({"type": "edit", "vertex": vertex, "column": 1, "value": 0.25})
+    table._handle_msg({"type": "edit-weight", "vertex": vertex, "column": 1, "value": 0.25})
     settled(bound, loop)
     assert state.weights[vertex, 1] == pytest.approx(0.25, abs=1 / STEPS)
     assert table.content["rows"][0][1] == 0.25
-    table._handle_msg({"type": "row-vertex", "vertex": vertex})
+    table._handle_msg({"type": "pick-vertex", "vertex": vertex})
     assert state.vertex == vertex
     keys.act(bound, "select none")
     loop.rest(bound)
@@ -422,7 +422,7 @@ def test_bars_of_the_histogram_hold_the_vertices_of_their_weights(bound, loop):
     for bar, (_, count) in enumerate(histogram.bars):
         above, up_to = bar / BARS, (bar + 1) / BARS
         assert count == ((weight > above + 1e-9) & (weight <= up_to + 1e-9)).sum()
-    histogram._handle_msg({"type": "bars", "first": 0, "last": 9})
+    histogram._handle_msg({"type": "pick-bars", "first": 0, "last": 9})
     within = (weight > 0) & (weight <= 0.5 + 1e-9)
     assert len(resolve(state, bound.memo).actors["selection"].points) == within.sum()
     selections.select_bars(bound)
@@ -430,7 +430,7 @@ def test_bars_of_the_histogram_hold_the_vertices_of_their_weights(bound, loop):
     assert state.bars is None
     loop.rest(bound)
     assert sum(count for _, count in histogram.bars) == within.sum()
-    histogram._handle_msg({"type": "bars", "first": 0, "last": BARS})
+    histogram._handle_msg({"type": "pick-bars", "first": 0, "last": BARS})
     assert state.bars is None, "there is no such bar"
     assert np.array_equal(bar_of(np.array([0, 1e-9, 0.05, 0.0501, 1.0])), [-1, 0, 0, 1, BARS - 1])
 

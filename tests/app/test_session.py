@@ -299,8 +299,10 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
 
 
 def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
-    reports, send = [], bound.view.send
-    bound.view.send = lambda **parts: reports.append(parts) or send(**parts)
+    reports, view = [], bound.view
+    send, present = view.send, view.present
+    view.send = lambda **parts: reports.append(parts) or send(**parts)
+    view.present = lambda scene, **parts: reports.append(parts) or present(scene, **parts)
     bound.state.panel = "distance"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, animating=True)
@@ -329,8 +331,8 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
             threads.append(threading.current_thread())
         return resolve(state, memo)
 
-    monkeypatch.setattr("cutcell_app.document.look.resolve", noted)
-    monkeypatch.setattr(session.view, "present", described.append)
+    monkeypatch.setattr("cutcell_app.shell.session.view_parts.resolve", noted)
+    monkeypatch.setattr(session.view, "present", lambda scene, **parts: described.append(scene))
     session.state.resolution = 16
     loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)

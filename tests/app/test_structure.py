@@ -16,7 +16,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 LAYERS = (
-    {"derive", "server"},
+    {"derive", "messages", "server"},
     {"files"},
     {"document"},
     {"widgets"},
@@ -129,7 +129,7 @@ def test_commands_know_no_widget_and_no_server_and_these_no_plotting_library():
     # matplotlib takes 60 MB of memory, VTK 75, and both time until the page is there.
     code = (
         "import sys, cutcell_app.headless, cutcell_app.shell.session.watchers\n"
-        "import cutcell_app.document.arrival\n"
+        "import cutcell_app.document.loading\n"
         "print({'panel', 'bokeh', 'tornado'} & set(sys.modules))\n"
         "import cutcell_app.serve\n"
         "print({'matplotlib', 'pyvista', 'vtk', 'vtkmodules'} & set(sys.modules))"

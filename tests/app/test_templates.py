@@ -92,8 +92,7 @@ def test_what_cannot_be_fitted_is_told(fitted, loop):
 def test_an_address_brings_it_back(fitted, session, loop):
     state, joints = fitted.state, fitted.state.rig.skeleton.joints
     said = to_text(state.edits)
-    fitted.arrival = {"edits": said, "bone": "bone.4"}
-    loading.show_rig(fitted, bare_arm())
+    loading.show_rig(fitted, bare_arm(), edits=said, bone="bone.4")
     loop.run_until(lambda: state.binding is not None)
     settled(fitted, loop)
     np.testing.assert_array_equal(state.rig.skeleton.joints, joints)

@@ -30,7 +30,7 @@ def texts(path):
 def test_no_text_of_the_page_has_more_than_twenty_words():
     paths = [path for name in FOLDERS for path in (ROOT / "app" / name).rglob("*.py")]
     result = [(path.name, text) for path in paths for text in texts(path)]
-    scripts = (ROOT / "app" / "frontend").glob("*.js")
+    scripts = (ROOT / "app" / "frontend").rglob("*.js")
     quoted = re.compile(r'"([^"\n]*)"')
     result += [(p.name, text) for p in scripts for text in quoted.findall(p.read_text())]
     assert len(result) > 1000

@@ -7,6 +7,8 @@ import pytest
 
 import cutcell
 from cutcell_app.document.framing import camera_part, theme_part
+from cutcell_app.messages.reading import MessageError
+from cutcell_app.messages.received import Pick
 from cutcell_app.widgets.changes import changes
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import framing
@@ -25,7 +27,7 @@ def scene(rig):
 def view():
     view = SceneView()
     view.picked = []
-    view.listen("pick", lambda message: view.picked.append(message["joint"]))
+    view.listen(Pick, lambda message: view.picked.append(message.joint))
     view.sent = []
     view._send_msg = view.sent.append
     return view
@@ -128,8 +130,9 @@ def test_a_browser_that_comes_again_gets_everything_again(view, scene):
 def test_what_a_person_does_is_told(view):
     view._handle_msg({"type": "pick", "joint": 2})
     assert view.picked == [2]
-    view._handle_msg({"type": "camera", "position": [1, 2, 3], "focal_point": [0, 0, 0]})
+    view._handle_msg({"type": "camera-moved", "position": [1, 2, 3], "focal_point": [0, 0, 0]})
     assert view.camera.position == (1, 2, 3)
     view._handle_msg({"type": "time", "time": 0.5})
     assert view.time == 0.5
-    view._handle_msg({"type": "nonsense"})
+    with pytest.raises(MessageError, match="nonsense"):
+        view._handle_msg({"type": "nonsense"})

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from cutcell_viewers.camera import FRONT
 from cutcell_viewers.tiles import shape_of, tiles
 
-TILES = Path(__file__).resolve().parents[2] / "app" / "frontend" / "tiles.js"
+TILES = Path(__file__).resolve().parents[2] / "app" / "frontend" / "camera" / "tiles.js"
 
 
 @given(st.integers(1, 6), st.integers(50, 3000), st.integers(50, 3000), st.floats(0.4, 2.5))

@@ -1,12 +1,8 @@
 """Return to choices that could be computed, after a failure or when a person cancels."""
 
-from typing import Any
-
-from cutcell.editing import Edits, edited_rig
-
 from ...document import recording
-from ...document.edits import changes
-from ...document.method import GRAPH, WEIGHTS, default, method_of
+from ...document.document import put
+from ...document.method import GRAPH, WEIGHTS, default, effective
 from ...document.session import Session
 
 CHAIN = ("built_graph", "bound", "influences", "recomputed", "binding")
@@ -36,13 +32,11 @@ def cancel(session: Session) -> None:
     exports = session.work.cancel("export") or waiting
     session.exports.clear()
     session.show_progress()
-    loads = session.work.cancel("character")
+    tasks = session.tasks.cancel()
     computes = session.engine.refuse(*CHAIN)
-    if exports or loads or computes:
-        text = "Cancelled. Nothing was changed." if loads or computes else "Cancelled."
+    if exports or tasks or computes:
+        text = "Cancelled. Nothing was changed." if tasks or computes else "Cancelled."
         state.message = ("info", text + " Nothing was exported." * exports)
-    if loads:
-        session.uploads.stay(session.uploads.key)
     if computes and state.graph is not None:
         go_back(session)
 
@@ -51,27 +45,28 @@ def go_back(session: Session) -> None:
     """Choose what was computed instead of what cannot be; at first, the defaults."""
     session.drop_exports()
     state = session.state
-    mesh, choices, edits = session.computed or (None, {}, Edits())
-    if state.rig is None or mesh is not state.rig.mesh or state.graph is None:
-        choices, edits = {name: default(name) for name in GRAPH}, state.first_edits
-    if method_of(state, tuple(choices)) == choices and state.edits == edits:
+    before = session.computed
+    if before is None or before.own is not state.own or state.graph is None:
+        values = {**{name: default(name) for name in GRAPH}, "edits": state.first_edits}
+    else:
+        # Options that the falloff does not use stay as they are.
+        choices = effective({n: before.choices[n] for n in (*GRAPH, *WEIGHTS)})
+        values = {**choices, "edits": before.edits, "repair": before.repair}
+    if all(getattr(state, name) == value for name, value in values.items()):
         return
-    if state.graph is None:
-        session.notice = state.message
-    changed = changes(state, edited_rig(state.own, edits), edits)
-    recording.withdraw(session, {**choices, **changed})
+    with session.history.restoring():
+        put(state, **values)
+    session.history.replace_current(recording.present(session))
+    recording.publish(session)
+    session.older_message = None  # the error stays
 
 
 def _arrived(session: Session) -> None:
     state = session.state
     if state.rig is None or not is_current(session):
         return
-    choices: dict[str, Any] = method_of(state, (*GRAPH, *WEIGHTS))
-    session.computed = state.rig.mesh, choices, state.edits
-    notice, session.notice = session.notice, None
-    if notice is not None:
-        state.message = notice
-    elif state.message is session.older_message:
+    session.computed = recording.present(session)
+    if state.message is session.older_message:
         state.message = None
 
 

@@ -13,6 +13,8 @@ from ...document.selection import Selection, selected
 from ...document.session import Session
 from ...document.state import State
 from ...looks.weights import painted_colors
+from ...messages import sent
+from ...messages.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
@@ -30,7 +32,7 @@ def watch(session: Session) -> None:
     """Connect the brush of the view to the weights."""
     follow = session.state.param.watch
     hand = Hand(session)
-    session.view.listen("brush", hand.paint)
+    session.view.listen(Paint, hand.paint)
     follow(lambda *events: take_up(session), "brush")
     follow(lambda event: put_down(session) if event.new else None, "joint_handle")
 
@@ -93,16 +95,15 @@ def radius_of(state: State) -> float:
     return float(state.brush_radius * np.ptp(state.rig.mesh.bounds, axis=0).max())
 
 
-def brush_part(session: Session) -> dict[str, Any] | None:
+def brush_part(state: State) -> sent.Brush | None:
     """Return the brush's size and its mirror plane; None for no brush."""
-    state = session.state
-    part: dict[str, Any] | None = None
+    part: sent.Brush | None = None
     if paints(state):
         scale = abs(np.linalg.det(state.rig.world[:3, :3])) ** (1 / 3)
         part = {"radius": radius_of(state) * scale, "mirror": None}
         # A pose is seldom mirrored: the other brush is elsewhere then than its image.
         posed = state.panel == "pose" and state.posed
-        mirror = mirror_of(session) if state.brush_mirrored and not posed else None
+        mirror = mirror_of(state) if state.brush_mirrored and not posed else None
         alike = state.brush_mode in WITHOUT_JOINT
         if mirror is not None and (alike or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
@@ -142,24 +143,17 @@ class Hand:
         self._selects: bool | None = None
         self._selected: NDArray[np.bool_] | None = None
 
-    def paint(self, message: dict[str, Any]) -> None:
-        """Continue a stroke, show its effect on the weights, and adopt it when it ends.
-
-        Parameters
-        ----------
-        message : dict
-            "points": of each point of the surface the three corners around it and what each counts
-            for; "first" and "done"; "cancelled"; "mode", where it is another than the brush's.
-        """
+    def paint(self, message: Paint) -> None:
+        """Continue a stroke, show its effect on the weights, and adopt it when it ends."""
         session, state = self._session, self._session.state
-        if message.get("first"):
-            self._begin(message.get("mode"))
+        if message.first:
+            self._begin(message.mode)
         stroke = self._stroke
         if stroke is None or self._of is not state.binding:
             self._stroke = None
             session.view.answer(painted={"gone": True})
             return
-        points = np.asarray(message.get("points", ()), float).reshape(-1, 6)
+        points = np.asarray(message.points or ()).reshape(-1, 6)
         corners = points[:, :3].astype(np.intp)
         if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
             stroke.pass_over(corners, points[:, 3:])
@@ -167,12 +161,12 @@ class Hand:
             self._select(stroke, message)
             return
         vertices, rows = stroke.painted()
-        if message.get("cancelled"):
+        if message.cancelled:
             self._stroke = None
             self._show(vertices, state.weights[vertices])
             return
         self._show(vertices, rows)
-        if message.get("done"):
+        if message.done:
             self._stroke = None
             self._take(vertices, rows)
             try:
@@ -200,7 +194,7 @@ class Hand:
                 state.weights,
                 state.joint,
                 brush,
-                mirror=mirror_of(session) if state.brush_mirrored else None,
+                mirror=mirror_of(state) if state.brush_mirrored else None,
                 locked=locked_names(state.edits),
                 max_influences=state.max_influences,
                 within=within,
@@ -210,27 +204,27 @@ class Hand:
             session.fail(error)
         self._of = state.binding
 
-    def _select(self, stroke: Stroke, message: dict[str, Any]) -> None:
+    def _select(self, stroke: Stroke, message: Paint) -> None:
         """Add what the stroke touched to the selection as it was before it, or take it away."""
         session, before = self._session, self._selected
         count = len(session.state.rig.mesh.vertices)
         chosen = np.zeros(count, np.bool_) if before is None else before.copy()
-        if not message.get("cancelled"):
+        if not message.cancelled:
             chosen[stroke.touched()] = self._selects
         select(session, chosen)
         session.view.answer(painted={})
-        if message.get("cancelled") or message.get("done"):
+        if message.cancelled or message.done:
             self._stroke = None
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
-        message: dict[str, Any]
         colors = painted_colors(self._session.state, vertices, rows)
-        message = {name: np.ascontiguousarray(values).ravel() for name, values in colors.items()}
+        message: Any = {"vertices": vertices.astype(np.uint32)}
+        message |= {name: np.ascontiguousarray(values).ravel() for name, values in colors.items()}
         if self._session.state.panel == "pose" and len(vertices):
             skin = Skin.of_weights(rows)
             influences = {"joints": skin.joints.ravel(), "weights": skin.weights.ravel()}
             message |= {**influences, "count": skin.joints.shape[1]}
-        self._session.view.answer(painted={"vertices": vertices.astype(np.uint32), **message})
+        self._session.view.answer(painted=message)
 
     def _take(self, vertices: NDArray, rows: NDArray) -> None:
         session, state = self._session, self._session.state

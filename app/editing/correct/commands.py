@@ -9,11 +9,12 @@ import numpy as np
 from cutcell.editing import Edits, JointEdit, Painted
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError, ParameterError
-from cutcell.rig import Rig, Skeleton
+from cutcell.rig import Skeleton
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import shown_name
 
-from ...document.edits import edited_state, renamed, tidy
+from ...document.document import put
+from ...document.edits import renamed, tidy
 from ...document.method import chosen_by, stored_method
 from ...document.session import Session
 from ...files.receive import safe_name
@@ -26,7 +27,7 @@ def correct(session: Session, edits: Edits) -> None:
     if edits == state.edits:
         return
     try:
-        state.param.update(**edited_state(state, edits))
+        put(state, edits=edits)
     except CutcellError as error:
         session.refuse(error)
 
@@ -168,16 +169,10 @@ def leave_out(session: Session, joints: Collection[int]) -> None:
     if state.edits != before:
         subject = names[0] if len(names) == 1 else f"{len(names)} joints"
         verb = "carries" if len(names) == 1 else "carry"
-        session.notice = ("info", f"{subject} {verb} no weight any more; undo takes it back.")
-
-
-def swap(session: Session, rig: Rig, **more: Any) -> None:
-    """Show the open character with other faces or weights; all choices stay."""
-    state = session.state
-    own = replace(state.own, mesh=rig.mesh)  # its weights went to other joints
-    if rig.origin is None:
-        own = replace(rig, skeleton=state.own.skeleton, clips=state.own.clips)
-    state.param.update(**{"rig": rig, "own": own, "vertex": None, "message": None, **more})
+        session.state.message = (
+            "info",
+            f"{subject} {verb} no weight any more; undo takes it back.",
+        )
 
 
 def clear(session: Session) -> None:
@@ -203,11 +198,8 @@ def file_name(session: Session) -> str:
 
 def open_text(session: Session, text: str) -> None:
     """Take the edits, and the method, that a file holds."""
-    state = session.state
     try:
         edits = Edits.from_json(text)
-        changed = edited_state(state, tidy(replace(edits, method={})))
+        put(session.state, edits=tidy(replace(edits, method={})), **chosen_by(edits.method))
     except CutcellError as error:
         session.fail(error)
-        return
-    state.param.update(**changed, **chosen_by(edits.method))

@@ -9,7 +9,6 @@ from cutcell_viewers.short_names import short_names
 from ...document.session import Session
 from ...looks.components import chosen, vertices_of
 from ...widgets import controls as ui
-from ...widgets.follow import Reader
 from ...widgets.rows import Rows
 from . import commands as correct
 from .components import MOST, Component, listed
@@ -91,7 +90,7 @@ def _ways(state: Any) -> dict[str, Any]:
 
 def _bind(session: Session, how: Any, joint: int | None = None) -> None:
     """Bind the component that is looked at, rigidly to the joint that it follows by default."""
-    state, one = session.state, _chosen(Reader(session))
+    state, one = session.state, _chosen(session.state)
     if one is None:
         return
     name = state.rig.skeleton.names[one.joint if joint is None else joint]

@@ -1,19 +1,21 @@
 """Move joints: by the handle in the view, by numbers, to the middle of the limb."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.editing import Edits, JointEdit
-from cutcell.editing.edited import edited_rig
 from cutcell.editing.symmetry import Mirror
 from cutcell.errors import CutcellError, SkeletonError
 from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 
+from ...document.document import applied
 from ...document.session import Session
+from ...document.state import State
+from ...messages.received import MoveJoint
+from ...messages.sent import Knob
 from ..compute import cross_section_centre, joint_mirror
 from .commands import check_alone, correct
 
@@ -25,20 +27,19 @@ def watch(session: Session) -> None:
     """Connect the handle to the chosen joint, and joints to the handle."""
     follow = session.state.param.watch
     hand = Hand(session)
-    session.view.listen("joint", hand.move)
+    session.view.listen(MoveJoint, hand.move)
     follow(lambda *events: hand.release(), ["rig", "binding", "panel"])
 
 
-def handle_part(session: Session) -> dict[str, Any] | None:
+def handle_part(state: State) -> Knob | None:
     """Return the move handle of the chosen joint, with its mirror plane, or None."""
-    state = session.state
     if state.rig is None or not state.joint_handle or state.panel != "weights":
         return None
     if state.binding is None:
         return None
     at = to_scene(state.rig, state.rig.skeleton.joints[[state.joint]])[0]
-    part = {"joint": state.joint, "at": at.tolist(), "mirror": None}
-    mirror, partner = mirror_of(session), moves_along(session)
+    part: Knob = {"joint": state.joint, "at": at.tolist(), "mirror": None}
+    mirror, partner = mirror_of(state), moves_along(state)
     if mirror is not None and partner is not None:
         part["mirror"] = plane_in_scene(state.rig.world, mirror)
     return part
@@ -52,9 +53,8 @@ def plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
     return [*out.tolist(), float(out @ on)]
 
 
-def mirror_of(session: Session) -> Mirror | None:
+def mirror_of(state: State) -> Mirror | None:
     """Return each joint's mirror image in the file; None if no joint has one."""
-    state = session.state
 
     def find() -> Mirror | None:
         try:
@@ -65,20 +65,20 @@ def mirror_of(session: Session) -> Mirror | None:
     skeleton = state.own_skeleton
     key = repr((skeleton.joints.tobytes(), skeleton.parents.tolist(), skeleton.names,
                 state.rig.skeleton.deform.tolist(), state.rig.partners))  # fmt: skip
-    mirror: Mirror | None = session.memo("mirror", (state.rig.mesh, key), find)
+    mirror: Mirror | None = state.memo("mirror", (state.rig.mesh, key), find)
     return mirror
 
 
-def partner_of(session: Session) -> int | None:
+def partner_of(state: State) -> int | None:
     """Return the joint on the other side of the chosen one; None if there is none."""
-    mirror, joint = mirror_of(session), session.state.joint
+    mirror, joint = mirror_of(state), state.joint
     partner = -1 if mirror is None else int(mirror.joint[joint])
     return None if partner in (-1, joint) else partner
 
 
-def moves_along(session: Session) -> int | None:
+def moves_along(state: State) -> int | None:
     """Return the joint that moves along with the chosen one, or None."""
-    return partner_of(session) if session.state.mirrored else None
+    return partner_of(state) if state.mirrored else None
 
 
 def put(session: Session, place: ArrayLike) -> None:
@@ -95,7 +95,7 @@ def put_back(session: Session) -> None:
     """Put the chosen joint, and its partner, where the file has them."""
     state = session.state
     edited = dict(state.edits.joints)
-    for joint in (state.joint, moves_along(session)):
+    for joint in (state.joint, moves_along(state)):
         if joint is not None:
             name = state.rig.skeleton.names[joint]
             if not edited.get(name, JointEdit()).added:
@@ -117,7 +117,7 @@ def moved(session: Session, place: ArrayLike) -> Edits:
     """Return the edits with the chosen joint somewhere, and its partner mirrored."""
     state, joint = session.state, session.state.joint
     places = {joint: np.asarray(place, float)}
-    mirror, partner = mirror_of(session), moves_along(session)
+    mirror, partner = mirror_of(state), moves_along(state)
     if mirror is not None and partner is not None:
         other = places[joint].copy()
         other[mirror.axis] = 2 * mirror.position - other[mirror.axis]
@@ -132,7 +132,7 @@ def moved(session: Session, place: ArrayLike) -> Edits:
         position = tuple(round(x, digits) for x in at.tolist())
         edited[name] = replace(before, position=None if same and not before.added else position)
     edits = replace(state.edits, joints=edited)
-    edited_rig(state.own, edits)
+    applied(state.own, state.repair, edits)
     return edits
 
 
@@ -154,25 +154,22 @@ class Hand:
         self._session = session
         self._holds = False
 
-    def move(self, message: dict[str, Any]) -> None:
-        """Show the character with the chosen joint somewhere; take it when it is let go.
-
-        The message has the number of the "joint", its "position" in the scene, and "done".
-        """
+    def move(self, message: MoveJoint) -> None:
+        """Show the character with the chosen joint moved; take its position when it is done."""
         session, state = self._session, self._session.state
-        if state.binding is None or int(message["joint"]) != state.joint:
+        if state.binding is None or message.joint != state.joint:
             return
         back = np.linalg.inv(state.rig.world)
-        place = back[:3, :3] @ np.asarray(message["position"], float) + back[:3, 3]
+        place = back[:3, :3] @ np.asarray(message.position) + back[:3, 3]
         try:
             edits = moved(session, place)
-            rig = edited_rig(state.own, edits)
+            rig = applied(state.own, state.repair, edits)
         except CutcellError as error:
             self.release()
             session.fail(error)
             session.view.send(mover=session.view.last_sent("mover"))  # where it was before
             return
-        if not message.get("done"):
+        if not message.done:
             if session.engine.is_fresh("bound"):  # else the last position is about to be bound
                 state.moved = rig, edits  # the bones follow at once
             return

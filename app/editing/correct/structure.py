@@ -5,15 +5,17 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from param.parameterized import batch_call_watchers
 
 from cutcell.editing import Computed, Edits, JointEdit, Locked
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
 
+from ...document.document import put
 from ...document.session import Session
 from ..compute.stack import changed
-from .commands import check_alone, correct, edited_state
+from .commands import check_alone, correct
 from .moving import mirror_of, moves_along, rounded
 
 BEYOND = 0.5
@@ -38,7 +40,7 @@ def hang_on(session: Session, parent: str) -> None:
     if on == int(skeleton.parents[joint]):
         return
     hung = {joint: on}
-    mirror, partner = mirror_of(session), moves_along(session)
+    mirror, partner = mirror_of(state), moves_along(state)
     # Where one side is an ancestor of the other, the other stays.
     independent = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
     if mirror is not None and partner is not None and independent:
@@ -130,17 +132,16 @@ def _unused(name: str, names: Collection[str]) -> str:
 def _change(session: Session, change: Callable[[Rig, Edits, str], tuple[Edits, str]]) -> None:
     """Change the chosen joint and the one on the other side; choose what the first leads to."""
     state = session.state
-    names, partner = state.rig.skeleton.names, moves_along(session)
+    names, partner = state.rig.skeleton.names, moves_along(state)
     edits, chosen = state.edits, []
     try:
         for joint in (state.joint, *([] if partner is None else [partner])):
             check_alone(state.rig.skeleton, joint)
             edits, leads_to = change(state.rig, edits, names[joint])
             chosen.append(leads_to)
-        values = edited_state(session.state, edits)
+        with batch_call_watchers(state):  # at once: it is one step to undo
+            put(state, edits=edits)
+            names = state.rig.skeleton.names
+            state.joint = names.index(chosen[0]) if chosen[0] in names else 0
     except CutcellError as error:
         session.fail(error)
-        return
-    names = values["rig"].skeleton.names
-    values["joint"] = names.index(chosen[0]) if chosen[0] in names else 0
-    state.param.update(**values)  # at once: it is one step to undo

@@ -6,7 +6,6 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
 from ...widgets import controls as ui
-from ...widgets.follow import Reader
 from . import structure as actions
 
 NOTHING = "None (root)"
@@ -32,7 +31,7 @@ def _parent(state: Any) -> dict[str, Any]:
 
 
 def _hang(session: Session, title: str) -> None:
-    parents = _parents(Reader(session))
+    parents = _parents(session.state)
     if title == NOTHING or title in parents:
         actions.hang_on(session, parents.get(title, ""))
 

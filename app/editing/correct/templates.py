@@ -1,41 +1,65 @@
 """Give a mesh that has no skeleton one: a template is fitted into it."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
+from param.parameterized import batch_call_watchers
 
 from cutcell.editing import Edits, JointEdit
+from cutcell.errors import ParameterError
 from cutcell.rig import Rig, Skeleton
 from cutcell.runtime.progress import Progress
 from cutcell.templates import Template, fit_skeleton, names_of
 
+from ...derive.tasks import Task
+from ...document.document import put
 from ...document.framing import first_joint
 from ...document.session import Session
-from .commands import edited_state
 from .moving import rounded
+
+
+class Fitting(Task):
+    """Fits a template into the mesh, binds it, and shows its weights."""
+
+    name, title = "fit", "a template"
+
+    def __init__(self, session: Session, template: Template) -> None:
+        self._state, self._template = session.state, template
+        self._own: Rig = session.state.own
+
+    def begin(self) -> Callable[[Progress], Skeleton]:
+        """Return what fits the template."""
+        if self._state.own is not self._own:
+            raise ParameterError("another character was opened; choose the template again")
+        mesh, graph, template = self._state.rig.mesh, self._state.graph, self._template
+
+        def compute(progress: Progress) -> Skeleton:
+            progress("fitting the skeleton", 0.0)
+            return fit_skeleton(mesh, template, graph=graph, progress=progress)
+
+        return compute
+
+    def finish(self, result: Skeleton) -> None:
+        """Add the joints of the skeleton."""
+        state = self._state
+        with batch_call_watchers(state):
+            put(state, edits=Edits(added(state.own, result)))
+            first = first_joint(state.rig)
+            state.param.update(joint=first, panel="weights", joint_handle=True)
+
+    def drop(self) -> None:
+        """Show in the menu what there is."""
+        self._state.param.trigger("edits")
 
 
 def fit(session: Session, template: Template) -> None:
     """Fit a template into the mesh, bind it, and show its weights."""
-    state = session.state
-    mesh, graph = state.rig.mesh, state.graph
-
-    def work(progress: Progress) -> Skeleton:
-        progress("fitting the skeleton", 0.0)
-        return fit_skeleton(mesh, template, graph=graph, progress=progress)
-
-    def done(skeleton: Skeleton) -> None:
-        changed = edited_state(session.state, Edits(added(state.own, skeleton)))
-        changed |= {"joint": first_joint(changed["rig"]), "panel": "weights", "joint_handle": True}
-        state.param.update(**changed)
-
-    session.work.start("character", work, done)
+    session.tasks.add(Fitting(session, template))
 
 
 def take_out(session: Session) -> None:
     """Remove the fitted skeleton."""
-    changed = edited_state(session.state, Edits())
-    session.state.param.update(**{**changed, "panel": "graph"})
+    put(session.state, edits=Edits(), panel="graph")
 
 
 def is_template(names: Collection[str], template: Template) -> bool:

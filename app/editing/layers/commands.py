@@ -112,6 +112,8 @@ def put_content(
 def set_layer(session: Session, place: int, **changed: Any) -> None:
     """Change the name, opacity, content or mask of a layer, or switch it on or off."""
     edits = session.state.edits
+    if not 0 <= place < len(edits.layers):
+        return  # undo has removed it
     layer = replace(edits.layers[place], **changed)
     if layer != edits.layers[place]:
         _change(session, lambda: (stack.replaced(edits, place, layer), place), together=True)

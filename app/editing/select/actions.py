@@ -20,7 +20,7 @@ ACTS: dict[str, Callable[[Session], None]] = {
     "copy": copy,
     "paste": paste,
 }
-"""By their names in `frontend/keys.js`."""
+"""By their names in `frontend/page/keys.js`."""
 
 
 def act(session: Session, name: str) -> None:

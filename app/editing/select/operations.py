@@ -152,7 +152,7 @@ def _mirror(session: Session) -> Mirror:
         try:
             return find_mirror(rig)
         except CutcellError:
-            return mirror_of(session)  # joints are mirrored, the mesh is not
+            return mirror_of(session.state)  # joints are mirrored, the mesh is not
 
     plane: Mirror | None = session.memo("mirror of vertices", (rig,), find)
     if plane is None:

@@ -1,7 +1,6 @@
 """Select vertices of the open character."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.histogram import in_bars
 from ...looks.selection import neighbours_of
+from ...messages.received import Lasso, PickStrongest
+from ...messages.sent import Through
 from ..brush.strokes import clear_selection, invert_selection, select
 from ..compute.condition import vertices_where
 
@@ -25,8 +26,8 @@ def watch(session: Session) -> None:
     """Connect lasso and keys of the view, and put one tool down when another is taken."""
     state, view = session.state, session.view
     state.param.watch(lambda *events: state.param.update(condition=""), "own")
-    view.listen("lasso", lambda message: lasso(session, message))
-    view.listen("strongest", lambda message: strongest(session, int(message["vertex"])))
+    view.listen(Lasso, lambda message: lasso(session, message))
+    view.listen(PickStrongest, lambda message: strongest(session, message.vertex))
     state.param.watch(lambda *events: _take_lasso(session), "lasso")
     state.param.watch(
         lambda *events: state.param.update(lasso=state.lasso and not _has_handle(state)),
@@ -51,9 +52,8 @@ def can_select(state: State) -> bool:
     return bool(is_ready and state.open_panel.paints)
 
 
-def lasso_part(session: Session) -> dict[str, Any] | None:
+def lasso_part(state: State) -> Through | None:
     """Return the lasso's settings for the view; None while it is off."""
-    state = session.state
     if not (state.lasso and can_select(state) and not state.playing):
         return None
     return {"through": state.lasso_through}
@@ -69,14 +69,14 @@ def choose(session: Session, vertices: NDArray[np.bool_], mode: str = "replace")
     select(session, vertices)
 
 
-def lasso(session: Session, message: dict[str, Any]) -> None:
+def lasso(session: Session, message: Lasso) -> None:
     """Select the vertices inside a line that was drawn in the view."""
     if not can_select(session.state):
         return
-    inside = np.asarray(message.get("vertices", ()), np.int64)
+    inside = np.asarray(message.vertices, np.int64)
     vertices = np.zeros(len(session.state.rig.mesh.vertices), np.bool_)
     vertices[inside[(inside >= 0) & (inside < len(vertices))]] = True
-    choose(session, vertices, str(message.get("mode")))
+    choose(session, vertices, message.mode)
 
 
 def strongest(session: Session, vertex: int) -> None:

@@ -11,6 +11,7 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected
 from ...document.session import Session
+from ...messages.received import EditWeight, Message, Page, PickVertex, Sort
 from .operations import edit
 
 ROWS = 20
@@ -101,22 +102,21 @@ def table_text(state: Any) -> str:
     return f"L1 to the file {weight_l1(state.weights[chosen], state.rig.weights[chosen]):.3f}."
 
 
-def act(session: Session, message: dict[str, Any]) -> None:
+def act(session: Session, message: Message) -> None:
     """Sort by a column, go to a page, choose the vertex of a row, or change a weight."""
     state, table = session.state, table_of(session.state)
     if table is None:
         return
-    if "sort" in message:
-        column = int(message["sort"])
-        before, largest_first = state.table_order
-        state.param.update(
-            table_order=(column, not largest_first if column == before else column > 0),
-            table_page=0,
-        )
-    elif "page" in message:
-        state.table_page = max(int(message["page"]), 0)
-    elif "column" in message:
-        joint = table.columns[int(message["column"])]
-        edit(session, int(message["vertex"]), joint, float(message["value"]))
-    else:
-        state.param.update(vertex=int(message["vertex"]), node=None)
+    match message:
+        case Sort(column):
+            before, largest_first = state.table_order
+            state.param.update(
+                table_order=(column, not largest_first if column == before else column > 0),
+                table_page=0,
+            )
+        case Page(page):
+            state.table_page = max(page, 0)
+        case EditWeight(vertex, column, value):
+            edit(session, vertex, table.columns[column], value)
+        case PickVertex(vertex):
+            state.param.update(vertex=vertex, node=None)

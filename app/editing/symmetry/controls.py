@@ -13,7 +13,6 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
 from ...widgets import controls as ui
-from ...widgets.follow import Reader
 from ...widgets.rows import Rows
 from ..correct.commands import check_alone, correct
 from ..correct.moving import mirror_of
@@ -56,7 +55,7 @@ def _rows(state: Any) -> dict[str, Any]:
 
 
 def _choose(session: Session, row: int) -> None:
-    session.state.joint = _pairs(Reader(session))[row][0]
+    session.state.joint = _pairs(session.state)[row][0]
 
 
 def _names(state: Any) -> tuple[str, ...]:

@@ -1,41 +1,17 @@
 """State of the panel Check: findings, and repairs."""
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import param
 
 from cutcell.diagnosis import Finding
 from cutcell.editing import Edits
-from cutcell.rig import Rig
 
 from ...document.state import Panel
 from ...editing.compute.stack import part_layers
 
 EXPORT = "export:"
 """Before the code of a finding about the weights that an export contains."""
-
-
-@dataclass(frozen=True, eq=False)
-class Repair:
-    """Repairs of the current character.
-
-    Parameters
-    ----------
-    before, after : Rig
-    counts : dict of str to int
-        How many findings of each severity there were before.
-    done : tuple of str
-        What was done, in sentences.
-    in_vain : frozenset of str
-        Codes of findings whose last repair did not help.
-    """
-
-    before: Rig
-    after: Rig
-    counts: dict[str, int]
-    done: tuple[str, ...]
-    in_vain: frozenset[str] = frozenset()
 
 
 PANEL = Panel(
@@ -62,7 +38,7 @@ class Choices(param.Parameterized):
         "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
     )
     tried: Any = param.Parameter(None, doc="Weights that are previewed, shape (n, j), or None.")
-    repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
+    repair: Any = param.Parameter(None, doc="The `Repair` of this character, or None.")
 
     @property
     def open_findings(self) -> list[Any]:

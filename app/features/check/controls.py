@@ -102,16 +102,20 @@ def _entry(finding: Finding, code: str) -> Any:
         ),
         _line(finding.message),
         # All buttons stay when another one is chosen, and the focus with them.
-        ui.listed(partial(_place, code=code)),
+        partial(_place, code=code),
         margin=(0, 0, 6, 0),
     )
 
 
-def _place(state: Any, code: str) -> list[Any]:
-    """Return the details of a finding while it is the chosen one."""
-    # But no weights that are not checked yet.
-    followed = (state.finding, state.export_diagnosis, state.edits)
-    return _details(state.session) if followed[0] == code else []
+def _place(session: Session, code: str) -> ui.Control:
+    """Return the place of a finding's details, which are there while it is the chosen one."""
+
+    def rows(state: State) -> list[Any]:
+        # But no weights that are not checked yet.
+        followed = (state.finding, state.export_diagnosis, state.edits)
+        return _details(session) if followed[0] == code else []
+
+    return ui.listed(rows)
 
 
 def _details(session: Session) -> list[Any]:
@@ -260,7 +264,7 @@ def _repairs(state: Any) -> list[Any]:
     if state.repair is None:
         return rows
     done = [_line(text) for text in state.repair.done]
-    if state.repair.before is state.rig:
+    if not state.repair.codes:
         return rows + done
     now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [

@@ -1,8 +1,10 @@
 """Findings of the open character and of its export; look at a finding; repair."""
 
+from collections.abc import Callable, Collection
 from typing import Any
 
-from cutcell.diagnosis import Diagnosis, Repaired, diagnose
+from cutcell.diagnosis import Diagnosis, diagnose
+from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances
 from cutcell.graph.fingerprint import data_fingerprint
 from cutcell.rig import Rig
@@ -11,31 +13,26 @@ from cutcell_viewers.finding_scene import camera_on
 
 from ...derive.derived import Derived
 from ...derive.jobs import DESCRIBING
+from ...derive.tasks import Task
+from ...document.document import Repair, put
+from ...document.edits import repaired, uses_weights
 from ...document.framing import bounds_of
 from ...document.look import set_camera
-from ...document.method import GRAPH, method_of
+from ...document.method import GRAPH, default, method_of
 from ...document.session import Session
 from ...document.state import State
 from ...editing.compute.stack import with_base
-from ...editing.correct.commands import swap
-from .choices import EXPORT, Repair
+from .choices import EXPORT
 
 
 def watch(session: Session) -> None:
     """Discard results of another character, and show the finding of an address."""
     follow = session.state.param.watch
-    follow(lambda *events: _begin_anew(session), "rig")
+    follow(lambda *events: session.state.param.update(finding=""), "rig")
     follow(lambda *events: _arrived(session, ""), "diagnosis")
     follow(lambda *events: session.state.param.update(tried=None),
            ["rig", "edits", "finding", "panel"])  # fmt: skip
     follow(lambda *events: _arrived(session, EXPORT), "export_diagnosis")
-
-
-def _begin_anew(session: Session) -> None:
-    state = session.state
-    state.finding = ""
-    if state.repair is not None and state.repair.after is not state.rig:
-        state.repair = None
 
 
 def _arrived(session: Session, prefix: str) -> None:
@@ -69,7 +66,7 @@ def _export_diagnosis(
 def _reusable(state: State) -> BoneDistances | None:
     """Return the binding's distances if a diagnosis of the character would measure the same."""
     names = tuple(name for name in GRAPH if name != "resolution")
-    if state.binding is None or method_of(type(state)(), names) != method_of(state, names):
+    if state.binding is None or method_of(state, names) != {name: default(name) for name in names}:
         return None
     distances: BoneDistances = state.binding.distances
     of_rig = data_fingerprint(state.rig.skeleton)
@@ -101,46 +98,49 @@ def _show_finding(session: Session) -> None:
             set_camera(session, camera)
 
 
-def repair(session: Session, codes: list[str]) -> None:
+class Repairing(Task):
+    """Repairs some findings of the open character; edits that are made meanwhile stay."""
+
+    name, title, slots = "repair", "a repair", DESCRIBING
+
+    def __init__(self, session: Session, codes: Collection[str]) -> None:
+        self._state, self._codes = session.state, codes
+        self._own: Rig = session.state.own
+
+    def begin(self) -> Callable[[Progress], Repair]:
+        """Return what repairs; findings of before another repair are found again."""
+        state = self._state
+        if state.own is not self._own:
+            raise ParameterError("another character was opened; repair the finding there")
+        own, earlier, rig, resolution = state.own, state.repair, state.rig, state.resolution
+        checked = state.diagnosis
+
+        def compute(progress: Progress) -> Repair:
+            progress("repairing", 0.0)
+            diagnosis = checked or diagnose(rig, resolution, progress=progress)
+            return repaired(own, earlier, diagnosis, self._codes)
+
+        return compute
+
+    def finish(self, result: Repair) -> None:
+        """Enter the repair into the document, and use the file's weights where it mends them."""
+        state = self._state
+        values: dict[str, Any] = {"repair": result}
+        if result.after is not (state.own if state.repair is None else state.repair.after):
+            values |= {"vertex": None, "message": None}
+        if state.graph is not None and uses_weights(state.repair, result, state.own):
+            values["edits"] = with_base(state.edits, from_file=True)
+        put(state, **values)
+
+
+def repair(session: Session, codes: Collection[str]) -> None:
     """Repair some findings, and bind what comes of it."""
-    state, before = session.state, session.state.diagnosis
-
-    def work(progress: Progress) -> Repaired:
-        progress("repairing", 0.0)
-        return before.repaired(codes)
-
-    def show(repaired: Repaired) -> None:
-        first, earlier = before, ()
-        if state.repair is not None:
-            first, earlier = state.repair, state.repair.done
-        original = first.rig if isinstance(first, Diagnosis) else first.before
-        in_vain = frozenset(finding.code for finding in repaired.in_vain)
-        if not repaired.repaired:  # nothing changed, and what was computed stays
-            if isinstance(first, Repair):
-                in_vain |= first.in_vain
-            after = state.rig
-        else:
-            after = repaired.rig
-        done = Repair(original, after, first.counts, (*earlier, *repaired.done), in_vain)
-        if after is state.rig:
-            state.repair = done
-        else:
-            swap(session, after, repair=done, **_edits(session, before.rig, after))
-
-    session.work.start("character", work, show, slots=DESCRIBING)
-
-
-def _edits(session: Session, before: Rig, after: Rig) -> dict[str, Any]:
-    """Return edits that use repaired weights of the file, where it is these that changed."""
-    if before.weights is after.weights or session.state.graph is None:
-        return {}
-    return {"edits": with_base(session.state.edits, from_file=True)}
+    session.tasks.add(Repairing(session, codes))
 
 
 def take_back(session: Session) -> None:
     """Restore the character as it was before all repairs."""
-    if session.state.repair is not None:
-        swap(session, session.state.repair.before, repair=None)
+    put(session.state, repair=None, vertex=None, message=None)
 
 
 RESULTS = (

@@ -30,6 +30,7 @@ from ...document.side_by_side import (
     FEWEST_VIEWS,
     MAX_VIEWS,
     NOW,
+    SINGLE,
     is_settings,
     listed,
     name_of,
@@ -79,7 +80,8 @@ def choose(session: Session, name: str, chosen: bool) -> None:
     if chosen:
         names = [one for one in listed(state.rig, [*names, name]) if one in {*names, name}]
     if FEWEST_VIEWS <= len(names) <= MAX_VIEWS:
-        state.param.update(methods=names, **single_choices(state, {}, names))
+        single = single_choices({one: getattr(state, one) for one in SINGLE}, names)
+        state.param.update(methods=names, **single)
 
 
 def add(session: Session) -> None:

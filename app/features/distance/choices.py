@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
+from ...document.common import MOMENT
 from ...document.state import Panel
 from ...looks.measures import CONVERGED, MAX_MEASURES, MEASURES, RESOLUTIONS
 
@@ -33,7 +34,7 @@ class Choices(param.Parameterized):
         0.0, bounds=(0, 10), doc="Distance at the end of the colours; 0: the farthest of the bone."
     )
     wave = param.Boolean(False, label="Wavefront", doc="Whether `front` hides what is farther.")
-    animating = param.Boolean(False, doc="Whether the wave runs.")
+    animating = param.Boolean(False, doc="Whether the wave runs.", precedence=MOMENT)
     beside_straight = param.Boolean(False, label=MEASURES["straight"])
     beside_surface = param.Boolean(False, label=MEASURES["surface"])
     beside_voxel = param.Boolean(False, label=MEASURES["voxel"])

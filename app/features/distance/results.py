@@ -9,6 +9,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.character import has_field
 from ...looks.measures import CONVERGED, method_of
+from ...messages.received import HaltWave
+from ...messages.sent import Wave
 from .measures import WITH_RESOLUTION
 from .scene import farthest, wants_field
 
@@ -17,17 +19,16 @@ WAVE_SECONDS = 6.0
 
 def watch(session: Session) -> None:
     """Take over where the wavefront halts."""
-    session.view.listen("front", lambda message: halt_wave(session, message["front"]))
+    session.view.listen(HaltWave, lambda message: halt_wave(session, message.front))
 
 
-def halt_wave(session: Session, front: float | None) -> None:
+def halt_wave(session: Session, front: float) -> None:
     """Take over where the wave halted in the browser, as a part of the greatest distance."""
-    session.state.front = min(max(front or 0.0, 0.0), 1.0)
+    session.state.front = min(max(front, 0.0), 1.0)
 
 
-def wave_part(session: Session) -> dict[str, float] | None:
+def wave_part(state: State) -> Wave | None:
     """Return how far and how fast the wavefront runs in the browser; None where it does not."""
-    state = session.state
     if state.panel != "distance" or not (state.wave and state.animating):
         return None
     end = farthest(state)

@@ -4,13 +4,13 @@ from functools import partial
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from cutcell_viewers.palette import BONE_IDLE, GHOST, INTERIOR, MARK, SOURCE, colormap, to_hex
 
 from ...document.framing import theme_of
 from ...document.session import Session
-from ...widgets.modules import script
+from ...messages.received import Answer, Message
+from ...widgets.modules import Widget, script
 from ...widgets.table import Control, draw
 
 STEPS = 16
@@ -19,7 +19,7 @@ WINDINGS = 11
 """Colours of winding numbers from 0 to 1."""
 
 
-class FlatScene(JSComponent):
+class FlatScene(Widget):
     """Draws a section of the character over the canvas; hidden without a mode."""
 
     value = param.String("", doc="One of `features.flat.choices.MODES`.")
@@ -28,15 +28,16 @@ class FlatScene(JSComponent):
     colors = param.Dict({}, doc="What `flat_colors` returns.")
     task = param.String("", doc="See `lesson_task` of the state.")
 
-    _esm = script("flat_scene")
+    _esm = script("flat/scene")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
         self._session = session
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        if data.get("type") == "answer" and self._session.state.lesson_task == "open":
-            self._session.state.acted = data["value"]
+    def receive(self, message: Message) -> None:
+        """Take the answer to a step that asks to act in the flat scene."""
+        if isinstance(message, Answer) and self._session.state.lesson_task == "open":
+            self._session.state.acted = message.value
 
 
 def flat_colors(state: Any) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import param
 
+from ...document.common import MOMENT
 from ...document.method import GRAPH, READABLE, choices_of
 from ...document.state import Panel
 
@@ -51,7 +52,9 @@ class Choices(choices_of(GRAPH)):  # type: ignore[misc]
         default="kind",
         objects={"Kind": "kind", "Depth": "depth", "Distance": "distance", "Part": "component"},
     )
-    node = param.Integer(None, allow_None=True, doc="The node that is looked at, or None.")
+    node = param.Integer(
+        None, allow_None=True, doc="The node that is looked at, or None.", precedence=MOMENT
+    )
 
     cut_keeps: param.Selector[str] = param.Selector(
         default="face",

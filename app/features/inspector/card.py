@@ -4,49 +4,44 @@ from functools import partial
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from ...document.address import from_query
 from ...document.look import pick, pick_node, pick_vertex
 from ...document.session import Session
 from ...editing.correct.commands import overrule
-from ...widgets.modules import script, style
+from ...messages.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
+from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .facts import node_facts, vertex_facts
 
 
-class Inspector(JSComponent):
+class Inspector(Widget):
     """A card with the facts of one vertex; hidden without any."""
 
     facts = param.Dict(None, allow_None=True, doc="What `vertex_facts` or `node_facts` returns.")
 
-    _esm = script("inspector")
+    _esm = script("widgets/inspector")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
         self._session = session
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        if data.get("type") == "close":
-            pick_vertex(self._session, None)
-        elif data.get("type") == "explain":
-            self._session.state.explain = not self._session.state.explain
-        elif data.get("type") == "part":
-            self._session.state.param.update(part=self._session.state.vertex, panel="weights")
-        elif data.get("type") == "overrule":
-            self._overrule(data["weights"])
-        elif data.get("type") == "node":
-            pick_node(self._session, int(data["node"]))
-        elif data.get("type") == "bone":
-            pick(self._session, int(data["joint"]))
-
-    def _overrule(self, overrides: list[list[float]] | None) -> None:
-        """Give the vertex weights, pairs of joint and weight; none for those that are computed."""
-        session, vertex = self._session, self._session.state.vertex
-        if vertex is None or session.state.binding is None:
-            return
-        weights = None if overrides is None else {int(joint): float(w) for joint, w in overrides}
-        overrule(session, vertex, weights)
+    def receive(self, message: Message) -> None:
+        """Do what a button of the card says."""
+        session, state = self._session, self._session.state
+        match message:
+            case Close():
+                pick_vertex(session, None)
+            case Explain():
+                state.explain = not state.explain
+            case ShowPart():
+                state.param.update(part=state.vertex, panel="weights")
+            case Override(weights) if state.vertex is not None and state.binding is not None:
+                overrule(session, state.vertex, None if weights is None else dict(weights))
+            case PickNode(node):
+                pick_node(session, node)
+            case Pick(joint):
+                pick(session, joint)
 
 
 def inspector(session: Session) -> Inspector:
@@ -54,7 +49,7 @@ def inspector(session: Session) -> Inspector:
     row = Control(
         partial(Inspector, session),
         facts=_facts,
-        stylesheets=[style("inspector_place")],
+        stylesheets=[style("widgets/inspector_place")],
         # Not by other stylesheets: Panel then asks for its own at a server far away.
         css_classes=lambda state: ["beside-lesson"] if state.step >= 0 else [],
         margin=0,

@@ -4,6 +4,7 @@ from typing import Any
 
 import param
 
+from ...document.common import MOMENT
 from ...document.state import Panel
 from .lesson import Step, built_in
 
@@ -20,10 +21,12 @@ class Choices(param.Parameterized):
     """The lesson, its step, and the answers so far."""
 
     lesson: Any = param.Parameter(built_in(), doc="A `Lesson`.")
-    step = param.Integer(-1, doc="The step that is shown; -1 for none.")
+    step = param.Integer(-1, doc="The step that is shown; -1 for none.", precedence=MOMENT)
     answers = param.Dict({}, doc="Answers by step; a step without one is not revealed.")
     acted: Any = param.Parameter(None, doc="The answer by an act in the picture.")
-    staged = param.Boolean(False, doc="Whether the lesson is presented, without the sidebar.")
+    staged = param.Boolean(
+        False, doc="Whether the lesson is presented, without the sidebar.", precedence=MOMENT
+    )
 
     @property
     def lesson_step(self) -> Step | None:

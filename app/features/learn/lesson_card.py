@@ -4,48 +4,50 @@ from functools import partial
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from ...document.session import Session
-from ...widgets.modules import script, style
+from ...messages.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
+from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .lesson import Lesson
 from .plots import plot_of
 from .steps import answer, choose, go, named_values, offer, painted_scores, pressed_offers
 
 
-class LessonCard(JSComponent):
+class LessonCard(Widget):
     """Shows a step of the lesson, and takes the answer."""
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")
-    now = param.Dict({}, doc="What the card shows: see `frontend/lesson_card.js`.")
+    now = param.Dict({}, doc="What the card shows: see `frontend/lesson/card.js`.")
 
-    _esm = script("lesson")
+    _esm = script("lesson/lesson")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
         self._session = session
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        session, kind = self._session, data.get("type")
-        if kind == "step":
-            go(session, int(data["step"]))
-        elif kind == "answer":
-            answer(session, data["value"])
-        elif kind == "offer":
-            offer(session, int(data["index"]))
-        elif kind == "choose-value":
-            choose(session, str(data["name"]), data["value"])
-        elif kind == "stage":
-            session.state.staged = bool(data["on"])
+    def receive(self, message: Message) -> None:
+        """Do what a person does with the card."""
+        session = self._session
+        match message:
+            case ShowStep(step):
+                go(session, step)
+            case Answer(value):
+                answer(session, value)
+            case Offer(index):
+                offer(session, index)
+            case ChooseValue(name, value):
+                choose(session, name, value)
+            case Stage(on):
+                session.state.staged = on
 
 
-class LessonNotes(JSComponent):
+class LessonNotes(Widget):
     """Shows the speaker's notes of the step that another window of this browser shows."""
 
     steps = param.List([], doc="What `Step.to_json` returns, of each step.")
 
-    _esm = script("lesson_notes")
+    _esm = script("lesson/notes")
 
 
 def lesson_card(session: Session) -> LessonCard:
@@ -54,7 +56,7 @@ def lesson_card(session: Session) -> LessonCard:
         partial(LessonCard, session),
         now=_now,
         steps=steps_of(session.state.lesson),
-        stylesheets=[style("lesson_card_place")],
+        stylesheets=[style("lesson/card_place")],
         css_classes=lambda state: ["staged"] if state.staged else [],
         margin=0,
     )

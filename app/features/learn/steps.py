@@ -1,19 +1,19 @@
 """Commands of the lesson: go to a step, answer it, press its buttons, leave."""
 
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing import edited_rig
 from cutcell_viewers.camera import Camera
 
-from ...document.address import defaults, from_query
-from ...document.edits import changed_only, changes
-from ...document.history import History
-from ...document.loading import load_demo, motion, revisit
+from ...document.address import camera_of, from_query
+from ...document.document import Document, History
+from ...document.loading import open_character
 from ...document.look import set_camera
-from ...document.recording import begin, restoring
+from ...document.opening import Opening, Request, motion
 from ...document.selection import selected
 from ...document.session import Session
 from ...document.side_by_side import SINGLE, standard
@@ -40,20 +40,24 @@ def watch(session: Session) -> None:
     follow(lambda *events: session.state.param.update(**unused), "step")
 
 
+@dataclass(frozen=True)
+class Before:
+    """The page from before the lesson."""
+
+    history: History
+    document: Document
+    camera: Camera | None
+    tools: dict[str, Any]
+
+
 def go(session: Session, index: int) -> None:
     """Show a step of the lesson; -1 leaves it and restores the page as it was before."""
     state = session.state
     if not 0 <= index < len(state.lesson):
         leave(session)
         return
-    if state.step < 0 and state.rig is not None:
-        camera = None if session.view.at_home else session.view.camera
-        tools = {name: getattr(state, name) for name in state.tools}
-        session.before_lesson = session.history, session.history.now, camera, tools
     step = state.lesson[index]
-    demo = step.demo or state.demo
-    state.param.update(step=index, demo=demo)  # together: one entry of the browser's history
-    show(session, step.scene(index in state.answers))
+    show(session, step.scene(index in state.answers), step=index)
 
 
 def leave(session: Session) -> None:
@@ -62,18 +66,24 @@ def leave(session: Session) -> None:
     A character that a person opened during the lesson stays, with its choices.
     """
     state, step = session.state, session.state.lesson_step
-    before, session.before_lesson = session.before_lesson, None
-    state.param.update(step=-1, staged=False)
-    if before is None:
-        return
-    history, choices, camera, tools = before
+    before = session.before_lesson
     of_lesson = step.characters if step else []
-    if session.character in (choices["character"], *of_lesson):
-        session.history = history
-        revisit(session, choices)
-        if choices["character"] == session.character:
-            set_camera(session, camera)
-        state.param.update(**tools)  # a selection counts on its own mesh only
+    if before is None or session.source not in (before.document.source, *of_lesson):
+        session.before_lesson = None
+        state.param.update(step=-1, staged=False)
+        return
+
+    def note(now: Document) -> None:
+        session.history, session.before_lesson = before.history, None
+        session.history.replace_current(now)
+
+    def restore_tools() -> None:
+        state.param.update(**before.tools)  # a selection counts on its own mesh only
+
+    open_character(session, Request(
+        before.document.source, document=before.document, camera=before.camera,
+        arrival={"step": -1, "stage": False}, note=note, then=restore_tools,
+    ))  # fmt: skip
 
 
 def answer(session: Session, value: Any) -> None:
@@ -103,7 +113,7 @@ def offer(session: Session, index: int) -> None:
         moves = motion(session, choices.get("panel", state.panel), arrival)
         state.param.update(**choices, **of_character(state, arrival), **moves)
         if "camera" in arrival:
-            set_camera(session, _camera(arrival))
+            set_camera(session, camera_of(arrival["camera"]))
 
 
 def choose(session: Session, name: str, value: Any) -> None:
@@ -133,44 +143,42 @@ def named_values(state: Any) -> dict[str, dict[str, Any]]:
     return {} if step is None else sliders_of(state, step.text)
 
 
-def show(session: Session, query: str, camera: Camera | None = None) -> None:
-    """Show the scene of an address, and its character; a camera replaces that of the address."""
+def show(
+    session: Session, query: str, camera: Camera | None = None, step: int | None = None
+) -> None:
+    """Show the scene of an address, and its character; a camera replaces that of the address.
+
+    `step` is the step that is gone to; None for the one that is shown.
+    """
     state = session.state
-    choices, arrival, _ = from_query(query, state)
-    arrival = {name: value for name, value in arrival.items() if name not in ("step", "answer")}
-    if camera is not None:
-        arrival["camera"] = [*camera.position, *camera.focal_point]
-    demo = arrival.get("rig", "")
-    is_open = state.rig is not None and demo in ("", session.character.removeprefix("demo "))
-    if is_open:
-        _show_open(session, choices, arrival)
-        return
-    session.history, session.returning = History({}), True
-    session.arrival = {"methods": standard(None), **arrival}
-    start = {n: v for n, v in defaults(state).items() if n not in ("methods", *SINGLE)}
-    chosen = {**start, **choices}
 
-    def choose_too() -> None:
-        state.param.update(**chosen)
+    def request() -> Request:
+        choices, arrival, _ = from_query(query, state)
+        demo = arrival.pop("rig", "")
+        for name in ("step", "answer"):
+            arrival.pop(name, None)
+        if step is not None:
+            arrival["step"] = step
+        before = None
+        if state.step < 0 and state.rig is not None:
+            tools = {name: getattr(state, name) for name in state.tools}
+            at = None if session.view.at_home else session.view.camera
+            before = partial(Before, camera=at, tools=tools)
 
-    load_demo(session, demo, choose_too, lambda: _prepare(session))
+        def note(now: Document) -> None:
+            if before is not None:
+                session.before_lesson = before(session.history, session.history.now)
+            session.history = History(now)
 
+        source = f"demo {demo}" if demo else session.source
+        if source != session.source:
+            arrival.setdefault("methods", standard(None))
+        return Request(
+            source, fresh=True, choices=choices, arrival=arrival, camera=camera, note=note,
+            then=lambda: _prepare(session),
+        )  # fmt: skip
 
-def _show_open(session: Session, choices: dict[str, Any], arrival: dict[str, Any]) -> None:
-    state = session.state
-    scene = {
-        **defaults(state), "vertex": None, "node": None, "part": None,
-        "panel": state.panel, **dict.fromkeys(("moving", "playing", "animating"), False),
-        **choices,
-    }  # fmt: skip
-    rig = edited_rig(state.own, scene["edits"])
-    scene |= changes(state, rig, scene["edits"])
-    scene |= {**of_character(state, arrival), **motion(session, scene["panel"], arrival)}
-    with restoring(session):
-        state.param.update(**changed_only(state, scene))
-    set_camera(session, _camera(arrival))
-    begin(session, "")
-    _prepare(session)
+    session.tasks.add(Opening(session, request))
 
 
 def of_character(state: Any, arrival: dict[str, Any]) -> dict[str, Any]:
@@ -240,7 +248,12 @@ def branch_weights(
 
 def _answer_by_click(session: Session, kind: str) -> None:
     state, step = session.state, session.state.lesson_step
-    if session.restoring or step is None or step.answer.kind != kind or state.rig is None:
+    if (
+        session.history.is_restoring
+        or step is None
+        or step.answer.kind != kind
+        or state.rig is None
+    ):
         return
     index = state.joint
     if kind == "vertex":
@@ -266,8 +279,3 @@ def followed(state: Any) -> NDArray[np.uint16]:
 def _offers(state: Any) -> list[str]:
     step = state.lesson_step
     return [] if step is None else list(step.offers.values())
-
-
-def _camera(arrival: dict[str, Any]) -> Camera | None:
-    numbers = arrival.get("camera")
-    return None if numbers is None else Camera(tuple(numbers[:3]), tuple(numbers[3:]))

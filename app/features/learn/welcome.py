@@ -6,6 +6,7 @@ import param
 
 from ...document.loading import receiver
 from ...document.session import Session
+from ...messages.received import ShowStep
 from ...widgets.file_drop import FileDrop
 from ...widgets.modules import script
 from .steps import go
@@ -19,7 +20,7 @@ class Welcome(FileDrop):
     )
     is_taught = param.Boolean(False, doc="Whether a step of the lesson is shown.")
 
-    _esm = script("welcome")
+    _esm = script("widgets/welcome")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(receiver(session), margin=0, **params)
@@ -27,7 +28,7 @@ class Welcome(FileDrop):
         session.state.param.watch(lambda event: self.param.update(is_taught=event.new >= 0), "step")
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
-        if data.get("type") == "step":
-            go(self._session, int(data["step"]))
+        if data.get("type") == ShowStep.type:
+            go(self._session, 0)
         else:
             super()._handle_msg(data)

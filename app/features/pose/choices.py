@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import param
 
+from ...document.common import MOMENT
 from ...document.state import Panel
 
 PANEL = Panel(
@@ -29,9 +30,13 @@ class Choices(param.Parameterized):
         doc="What to swing about.",
     )
     turns = param.Dict({}, doc="Degrees about x, y and z, a triple for each turned joint.")
-    clip = param.Integer(-1, doc="Which clip of the rig to play; -1 swings the joint.")
-    moving = param.Boolean(False, doc="Whether a motion, rather than `turns`, poses.")
-    playing = param.Boolean(False, doc="Whether that motion runs, or is halted.")
+    clip = param.Integer(
+        -1, doc="Which clip of the rig to play; -1 swings the joint.", precedence=MOMENT
+    )
+    moving = param.Boolean(
+        False, doc="Whether a motion, rather than `turns`, poses.", precedence=MOMENT
+    )
+    playing = param.Boolean(False, doc="Whether that motion runs, or is halted.", precedence=MOMENT)
 
     blending: param.Selector[str] = param.Selector(
         default="linear",

@@ -11,6 +11,8 @@ from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
 from ...looks.pose import angles_of, clip_of, rotation_of
+from ...messages.received import Play, Turn
+from ...messages.sent import Motion
 from .errors import motion_error, scene_error
 from .materials import MATERIALS
 from .scene import clip_part, has_rival
@@ -22,26 +24,24 @@ TURN_DEGREES = 30.0
 def watch(session: Session) -> None:
     """Connect the rings and the play button of the view."""
     hand = Hand(session)
-    session.view.listen("turn", hand.turn)
-    session.view.listen("play", lambda data: session.state.param.update(playing=bool(data["on"])))
+    session.view.listen(Turn, hand.turn)
+    session.view.listen(Play, lambda message: session.state.param.update(playing=message.on))
 
 
-def motion_part(session: Session) -> dict[str, Any] | None:
-    """Return the motion that is on, or None."""
-    state = session.state
+def motion_part(state: State) -> Motion | None:
+    """Return the motion that is on, or None; raise a `CutcellError` if it cannot be played."""
     clip = clip_of(state)
-
-    def make() -> dict[str, Any] | None:
-        try:
-            return clip_part(state, clip)
-        except CutcellError as error:  # the clip cannot be played
-            session.fail(error)
-            return None
-
-    part: dict[str, Any] | None = session.memo(
-        "clip", (state.rig, clip is None, state.motion), make
-    )
+    inputs = (state.rig, clip is None, state.motion)
+    part: Motion | None = state.memo("clip", inputs, lambda: clip_part(state, clip))
     return part
+
+
+def is_playing(state: State) -> bool:
+    """Return whether a motion runs in the browser."""
+    try:
+        return bool(state.playing and motion_part(state))
+    except CutcellError:
+        return False
 
 
 class Hand:
@@ -51,20 +51,16 @@ class Hand:
         self._state = session.state
         self._last_turn = (0.0, 0.0, 0.0)
 
-    def turn(self, data: dict[str, Any]) -> None:
-        """Turn a joint about one of its local axes.
-
-        The data have the number of the "joint", of the "axis", the "degrees" since it was taken
-        hold of, and "begin" where that was just now.
-        """
-        state, joint = self._state, int(data["joint"])
+    def turn(self, message: Turn) -> None:
+        """Turn a joint about one of its local axes, by the degrees since its ring was pressed."""
+        state, joint = self._state, message.joint
         if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
             return
         now = state.turns.get(joint, (0.0, 0.0, 0.0))
-        if data.get("begin"):
+        if message.begin:
             self._last_turn = now
-        axis = "xyz"[int(data["axis"])]
-        rotation = rotation_of(self._last_turn) @ axis_rotation(axis, float(data["degrees"]))
+        axis = "xyz"[message.axis]
+        rotation = rotation_of(self._last_turn) @ axis_rotation(axis, message.degrees)
         turns = {**state.turns, joint: angles_of(rotation, now)}
         state.param.update(turns=turns, moving=False, playing=False)
 

@@ -25,6 +25,7 @@ from ...looks.character import character
 from ...looks.pose import pose_of
 from ...looks.selection import isolated, selection_marks
 from ...looks.weights import weights_look, weights_seen
+from ...messages.sent import Motion, Rings
 
 GHOST_OPACITY = 0.38
 MAX_NUMBERS = 2**22
@@ -139,7 +140,7 @@ def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tupl
     return error_limits([0.0] if placed is None else lengths_of(state, placed, memo))
 
 
-def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict[str, Any] | None:
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
     """Return a motion as a message for the view, with a limited number of numbers."""
     if clip is None or not len(times := clip.times):
         return None
@@ -153,7 +154,7 @@ def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict
     return {"times": times, "matrices": matrices.ravel()}
 
 
-def gizmo_part(state: State) -> dict[str, Any] | None:
+def gizmo_part(state: State) -> Rings | None:
     """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
     if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
         return None

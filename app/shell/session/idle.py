@@ -1,8 +1,7 @@
 """Message to the browser when no work is left: tests wait for it before they look."""
 
-from typing import Any
-
 from ...document.session import Session
+from ...messages.received import AskIdle
 
 
 def watch(session: Session) -> None:
@@ -17,7 +16,7 @@ def watch(session: Session) -> None:
         else:
             session.view.answer(idle=number)
 
-    def wait(message: dict[str, Any]) -> None:
-        session.work.when_idle(lambda: answer(int(message["number"])))
+    def wait(message: AskIdle) -> None:
+        session.work.when_idle(lambda: answer(message.number))
 
-    session.view.listen("idle?", wait)
+    session.view.listen(AskIdle, wait)

@@ -1,14 +1,14 @@
 """Actions of the keys and of the buttons over the canvas."""
 
 import numpy as np
+from param.parameterized import batch_call_watchers
 
-from cutcell.editing import edited_rig
 from cutcell_viewers.camera import FRONT
 
 from ...document.address import defaults
-from ...document.edits import changed_only, changes
+from ...document.document import put
 from ...document.framing import camera_on_bone, first_joint
-from ...document.loading import revisit
+from ...document.loading import travel
 from ...document.look import set_camera
 from ...document.session import Session
 from ...document.state import State
@@ -16,22 +16,23 @@ from ...editing.brush import strokes as brush
 from ...editing.select import actions as selecting
 from ...features.learn.writing import save_view
 from ...features.pairs import results as pairs
+from ...messages.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
 
 
 def watch(session: Session) -> None:
-    """Obey the keys."""
-    session.view.listen("act", lambda message: act(session, str(message.get("act"))))
+    """Connect the keys."""
+    session.view.listen(Act, lambda message: act(session, message.act))
 
 
 def act(session: Session, name: str) -> None:
     """Do what a key or a button says."""
     state = session.state
     does = {
-        "undo": lambda: revisit(session, session.history.undo()),
-        "redo": lambda: revisit(session, session.history.redo()),
+        "undo": lambda: travel(session, -1),
+        "redo": lambda: travel(session, 1),
         "reset": lambda: reset(session),
         "step": lambda: save_view(session),
         "rendered": lambda: state.param.update(rendered=not state.rendered),
@@ -58,9 +59,9 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = edited_rig(state.own, state.first_edits)
-    changed = {**changes(state, rig, state.first_edits), **changed_only(state, first)}
-    state.param.update(**{**changed, "joint": first_joint(rig)})
+    with batch_call_watchers(state):
+        put(state, **first)
+        state.joint = first_joint(state.rig)
     session.view.send(home=True)
 
 

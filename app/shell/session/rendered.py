@@ -1,6 +1,5 @@
 """Rendered: the canvas as PyVista draws it on the server, once the view rests."""
 
-import math
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +10,7 @@ from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ...document.session import Session
+from ...messages.received import DrawFrame
 from .export import Seen
 
 PROCESS = DrawingProcess()
@@ -21,17 +21,12 @@ MAX_TILES = 16
 
 
 def watch(session: Session) -> None:
-    """Draw a frame when the browser asks for one; say when the switch is turned."""
-    state, view = session.state, session.view
-    state.param.watch(lambda *events: view.send(rendered=state.rendered), "rendered")
-    view.listen("frame", lambda message: draw(session, message))
+    """Draw a frame when the browser asks for one."""
+    session.view.listen(DrawFrame, lambda message: draw(session, message))
 
 
-def draw(session: Session, message: dict[str, Any]) -> None:
-    """Draw the scene as the browser shows it, and send the picture.
-
-    The message has the browser's number of the "frame", its camera, its pixels and its tiles.
-    """
+def draw(session: Session, message: DrawFrame) -> None:
+    """Draw the scene as the browser shows it, and send the picture."""
     scene, options = Seen.now(session), _frame_options(message)
 
     def work(progress: Any) -> bytes | CutcellError:
@@ -45,29 +40,25 @@ def draw(session: Session, message: dict[str, Any]) -> None:
             session.state.rendered = False
             session.fail(picture)
         else:
-            session.view.answer(frame={"count": message["count"], "picture": picture})
+            session.view.answer(frame={"count": message.count, "picture": picture})
 
     session.work.newest("rendered", work, done)
 
 
-def _frame_options(message: dict[str, Any]) -> dict[str, Any]:
+def _frame_options(message: DrawFrame) -> dict[str, Any]:
     """Return the camera and the sizes of a frame, within the limits of the server."""
-    width, height = (float(side) for side in message["size"])
-    ratio = min(float(message["ratio"]), MAX_SIDE / max(width, height, 1.0))
+    width, height = message.size
+    ratio = min(message.ratio, MAX_SIDE / max(width, height, 1.0))
     size = (max(round(ratio * width), 1), max(round(ratio * height), 1))
-    tiles = [_tile_within(size, ratio, tile) for tile in message["tiles"][:MAX_TILES]]
-    across, above = (float(x) for x in message["centre"])
-    camera = Camera(
-        tuple(message["position"]), tuple(message["focal_point"]), centre=(across, above)
-    )
-    if not all(map(math.isfinite, (*camera.position, *camera.focal_point, across, above))):
-        raise ValueError("the browser's camera is not finite")
+    tiles = [_tile_within(size, ratio, tile) for tile in message.tiles[:MAX_TILES]]
+    across, above = message.centre
+    camera = Camera(message.position, message.focal_point, centre=(across, above))
     return {
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
         "page_height": size[1] / ratio,
-        "fine": bool(message["fine"]),
+        "fine": message.fine,
     }
 
 

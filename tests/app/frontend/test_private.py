@@ -29,7 +29,7 @@ def test_name_is_there(path, name):
 
 
 def test_the_lines_of_reacts_components_that_are_replaced_are_there():
-    script = (FOLDER / "panel.js").read_text(encoding="utf-8")
+    script = (FOLDER / "common/panel.js").read_text(encoding="utf-8")
     for constant in ("ECHO", "STATE"):
         line = re.search(rf'const {constant} = "(.+)"', script)[1]
         for path in (PANEL, REACT):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import posixpath
 import re
 from pathlib import Path
 
@@ -11,17 +12,17 @@ from panel.io.resources import DIST_DIR
 
 from cutcell_app.features.inspector.facts import NO_WEIGHT
 from cutcell_app.features.pose.controls import RING_COLORS
+from cutcell_app.messages.typescript import DECLARATIONS, typescript
 from cutcell_app.shell.page import NARROW
 from cutcell_app.shell.theme import NARROW as NARROW_MEDIA
 from cutcell_app.shell.theme import SHEET
-from cutcell_app.widgets.modules import FOLDER, head, script, style
-from cutcell_app.widgets.protocol import DECLARATIONS, typescript
+from cutcell_app.widgets.modules import FOLDER, head, names, script, style
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import FRONT, VIEW_ANGLE
 from cutcell_viewers.palette import BODY
 from tests.conftest import ROOT
 
-TESTS = sorted(Path(__file__).parent.glob("*.test.js"))
+TESTS = sorted(Path(__file__).parent.rglob("*.test.js"))
 
 
 @pytest.mark.parametrize("path", TESTS, ids=lambda path: path.name.removesuffix(".test.js"))
@@ -39,27 +40,39 @@ def test_script(path):
 
 
 def test_every_module_and_style_is_used():
-    modules = {path.stem: path.read_text() for path in FOLDER.glob("*.js")}
+    modules = {name.removesuffix(".js"): (FOLDER / name).read_text() for name in names(".js")}
     rendered = {name for name, text in modules.items() if "export function render(" in text}
     assert rendered == {
-        "view", "curves", "file_drop", "flat_scene", "histogram", "inspector", "joint_tree",
-        "methods", "rows", "tabs", "lesson", "lesson_notes", "weights_table", "welcome",
+        "flat/scene", "lesson/lesson", "lesson/notes", "tables/curves", "tables/histogram",
+        "tables/methods", "tables/rows", "tables/weights_table", "view/view", "widgets/file_drop",
+        "widgets/inspector", "widgets/joint_tree", "widgets/tabs", "widgets/welcome",
     }  # fmt: skip
     assert '/panel.js"></script>' in head()  # it runs before any other
-    entries = {"lesson_page", "notebook", "standalone"}
-    for name in modules.keys() - rendered - entries:
-        assert any(f'"./{name}.js"' in text for text in modules.values()), name
+    entries = {"one_file/lesson_page", "one_file/notebook", "one_file/standalone"}
+    imported = {
+        posixpath.normpath(posixpath.join(name, "..", path))
+        for name, text in modules.items()
+        for path in re.findall(r'from "(\.[^"]+)\.js"', text)
+    }
+    assert modules.keys() - rendered - entries <= imported
     python = "".join(path.read_text() for path in (ROOT / "app").rglob("*.py"))
-    for path in FOLDER.glob("*.css"):
-        by_script = any(f'stylesheet("{path.name}")' in text for text in modules.values())
-        by_page = path.stem in entries or f'style("{path.stem}")' in python
-        assert by_script or by_page, path.name
-        assert style(path.stem).count("{") == style(path.stem).count("}")
-    assert "/view.js" in script("view")
+    for path in names(".css"):
+        name = path.removesuffix(".css")
+        by_script = any(f'stylesheet("{path}")' in text for text in modules.values())
+        by_page = name in entries or f'style("{name}")' in python
+        assert by_script or by_page, path
+        assert style(name).count("{") == style(name).count("}")
+    assert "/view/view.js" in script("view/view")
+
+
+def test_no_folder_of_scripts_has_more_than_fifteen_entries():
+    folders = [path for path in (FOLDER, *FOLDER.rglob("*")) if path.is_dir()]
+    assert len(folders) > 10
+    assert [path.name for path in folders if len(list(path.iterdir())) > 15] == []
 
 
 def test_the_types_of_messages_are_those_that_are_declared():
-    command = "python -m cutcell_app.widgets.protocol"
+    command = "python -m cutcell_app.messages.typescript"
     assert DECLARATIONS.read_text() == typescript(), f"messages.d.ts is stale: run {command}"
 
 
@@ -68,11 +81,11 @@ def test_what_both_sides_draw_with_is_the_same():
         text = (FOLDER / script_name).read_text()
         return json.loads(re.search(rf"const {name} = ([^;\n/]+?) *(?://.*)?$", text, re.M)[1])
 
-    assert constant("orbit.js", "VIEW_ANGLE") == VIEW_ANGLE
-    assert constant("tiles.js", "FRONT") == list(FRONT)
-    assert constant("gizmo.js", "RING_COLORS") == list(RING_COLORS)
-    assert constant("colour.js", "QUIET") == [round(255 * x) for x in BODY]
-    assert constant("mui.js", "HEIGHT") == SHEET
-    assert constant("standalone.js", "LEAST") == NO_WEIGHT
-    assert NARROW_MEDIA.endswith(constant("mui.js", "NARROW"))
+    assert constant("camera/orbit.js", "VIEW_ANGLE") == VIEW_ANGLE
+    assert constant("camera/tiles.js", "FRONT") == list(FRONT)
+    assert constant("handles/gizmo.js", "RING_COLORS") == list(RING_COLORS)
+    assert constant("engine/colour.js", "QUIET") == [round(255 * x) for x in BODY]
+    assert constant("page/mui.js", "HEIGHT") == SHEET
+    assert constant("one_file/standalone.js", "LEAST") == NO_WEIGHT
+    assert NARROW_MEDIA.endswith(constant("page/mui.js", "NARROW"))
     assert f"max-width: {NARROW - 0.05:.2f}px" in NARROW_MEDIA

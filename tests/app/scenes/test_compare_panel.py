@@ -8,7 +8,9 @@ import pytest
 import cutcell
 import cutcell_lab
 from cutcell.runtime.progress import silent
+from cutcell_app.derive.engine import Engine
 from cutcell_app.derive.memo import Memo
+from cutcell_app.derive.work import Work
 from cutcell_app.document.side_by_side import NOW, offered
 from cutcell_app.features.compare.controls import FIELD, about, rows_of
 from cutcell_app.features.compare.results import Compared, choose, measured
@@ -40,6 +42,7 @@ class Page:
 
     def __init__(self, state):
         self.state = state
+        self.engine = Engine(state, Work(lambda action: action(), print))
 
 
 def test_each_method_has_a_view_of_its_own_and_bones_stand_in_all(state, rig, euclidean):

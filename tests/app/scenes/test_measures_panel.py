@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell_app.derive.derived import compute_wanted
+from cutcell_app.derive.derived import ComputedWhenRead
 from cutcell_app.derive.memo import Memo
 from cutcell_app.document import loading
 from cutcell_app.document.address import from_query, to_query
@@ -29,7 +29,7 @@ from tests.viewers.arm import arm_rig
 def state(rig, binding):
     state = PageState(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)
     state.param.update(beside_straight=True, beside_voxel=True, beside_any=True)
-    compute_wanted(state, RESULTS)
+    resolve(ComputedWhenRead(state, RESULTS))
     return state
 
 
@@ -50,7 +50,7 @@ def test_each_measure_has_a_view_and_all_have_one_scale(state, rig, binding):
 
 def test_beside_the_converged_one_each_says_its_error(state):
     state.param.update(beside_straight=False, beside_voxel=False, beside_converged=True)
-    compute_wanted(state, RESULTS)
+    resolve(ComputedWhenRead(state, RESULTS))
     one, converged = (state.measured[name] for name in ("any", "converged"))
     error = mean_error(one, converged)
     assert 0 < error < 0.1
@@ -73,10 +73,10 @@ def test_a_distance_is_one_number_in_caption_legend_and_card(rig, binding):
     """The path that is drawn may be shorter or longer by a cell."""
     state = PageState(rig=rig, binding=binding, joint=2, panel="distance", vertex=0)
     state.param.update(resolution=16, beside_resolution=16, beside_any=True)
-    compute_wanted(state, RESULTS)
+    resolve(ComputedWhenRead(state, RESULTS))
     (caption,) = resolve(state).views
     state.beside_any = False
-    compute_wanted(state, RESULTS)
+    resolve(ComputedWhenRead(state, RESULTS))
     (text,) = (text for _, text in resolve(state).legend.swatches if text.startswith("shortest"))
     facts = vertex_facts(state, Memo())
     (row,) = (one for one in facts["distances"] if one["joint"] == 2)

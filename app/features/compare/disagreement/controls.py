@@ -86,7 +86,7 @@ def _place(state: Any, key: str) -> list[Any]:
     """Return the details of a region while it is the chosen one."""
     if state.region != key:
         return []
-    return _details(state.session.state)
+    return _details(state)
 
 
 def _details(state: State) -> list[Any]:

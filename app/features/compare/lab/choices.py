@@ -9,6 +9,8 @@ import param
 from cutcell.errors import ParameterError
 from cutcell_lab.sweeps import parsed_values, value_text
 
+from ....document.common import MOMENT
+
 OPTIONS = {
     "Resolution R": "resolution",
     "Winding threshold τ": "winding_threshold",
@@ -56,13 +58,15 @@ class Choices(param.Parameterized):
     sweep_option: param.Selector[str] = param.Selector(default="resolution", objects=OPTIONS)
     sweep_values = param.String("", doc="Values with commas; empty for those of `VALUES`.")
     sweep_measure: param.Selector[str] = param.Selector(default="l1", objects=MEASURES)
-    sweeping = param.Boolean(False, doc="Whether a sweep is being computed.")
+    sweeping = param.Boolean(False, doc="Whether a sweep is being computed.", precedence=MOMENT)
     swept = param.Dict({}, doc="By the text of each value: its `SweepPoint`.")
     sweep_reference: Any = param.Parameter(
         None, doc="Weights that errors are against where the file has none, (n, j); or None."
     )
     error_curves: Any = param.Parameter(None, doc="`ErrorPoint`s of the chosen bone, or None.")
-    measuring_errors = param.Boolean(False, doc="Whether errors are being measured.")
+    measuring_errors = param.Boolean(
+        False, doc="Whether errors are being measured.", precedence=MOMENT
+    )
 
     @property
     def sweep_texts(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""Measures of settings as curves, for `frontend/curves.js`."""
+"""Measures of settings as curves, for `frontend/tables/curves.js`."""
 
 import math
 from collections.abc import Callable, Sequence

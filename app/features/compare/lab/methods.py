@@ -1,9 +1,8 @@
 """The table of methods: which are seen, and how good they are."""
 
-from typing import Any
-
 import param
 
+from ....messages.received import Message, ShowMethod
 from ....widgets.modules import Clickable, script
 
 
@@ -16,8 +15,9 @@ class Methods(Clickable):
     single = param.Boolean(False, doc="Whether one row at most is ticked, by round boxes.")
     label = param.String("Methods", doc="Name of the table for a screen reader.")
 
-    _esm = script("methods")
+    _esm = script("tables/methods")
 
-    def _handle_msg(self, data: dict[str, Any]) -> None:
-        if str(data["id"]) in {row["id"] for row in self.rows}:
-            self.click((str(data["id"]), bool(data["on"])))
+    def receive(self, message: Message) -> None:
+        """Report a method that is ticked or not."""
+        if isinstance(message, ShowMethod) and message.id in {row["id"] for row in self.rows}:
+            self.click((message.id, message.on))

@@ -1,9 +1,0 @@
-// Modes of the flat scene. Each has seen() (the box that is seen), buttons(), say(),
-// press(point, isNew), key(name), which returns whether the key means anything, and tick(now),
-// whether something runs. reveal() shows the answer of a step, where there is one.
-
-import {Graph} from "./flat_graph.js"
-import {Paths} from "./flat_paths.js"
-import {Rays} from "./flat_rays.js"
-
-export const MODES = {rays: Rays, winding: Rays, graph: Graph, search: Paths}
