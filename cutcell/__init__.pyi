@@ -7,6 +7,7 @@ from . import graph as graph
 from . import io as io
 from . import method as method
 from . import pose as pose
+from . import priors as priors
 from . import rig as rig
 from . import templates as templates
 from . import weights as weights

@@ -45,10 +45,10 @@ TORCH = [
 ORDER = (
     "errors", "checks", "options", "animation.declaration", "method", "runtime", "geometry", "rig",
     "isolated", "io", "graph", "bones", "animation.any_angle", "animation.bone_extents",
-    "geodesics", "pose", "animation.falloff", "weights", "editing", "binding", "templates",
-    "diagnosis", "cli", "__main__",
+    "geodesics", "pose", "animation.falloff", "weights", "priors", "editing", "binding",
+    "templates", "diagnosis", "cli", "__main__",
 )  # fmt: skip
-MAX_ROOT_ENTRIES = 24
+MAX_ROOT_ENTRIES = 25
 MAX_FILES = 15
 """In one folder of the core."""
 

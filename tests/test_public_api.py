@@ -15,7 +15,7 @@ from tests.conftest import ROOT
 
 PACKAGES = [
     *(f"cutcell.{name}" for name in ("io", "graph", "geodesics", "weights", "editing")),
-    *(f"cutcell.{name}" for name in ("binding", "pose")),
+    *(f"cutcell.{name}" for name in ("binding", "pose", "priors")),
     "cutcell_lab.metrics",
     "cutcell_lab.baselines",
 ]

@@ -33,6 +33,14 @@ def whole_way(path: Path) -> NDArray[np.float64]:
     return binding.weights
 
 
+def as_networks_call_it(rig: cutcell.Rig) -> dict[str, NDArray[np.floating]]:
+    skin = cutcell.priors.voxel_skin(
+        joints=rig.skeleton.joints, vertices=rig.mesh.vertices, faces=rig.mesh.faces
+    )
+    assert_type(skin, NDArray[np.floating])
+    return cutcell.priors.VertexGroupVoxelSkin.parse(mode="exp").get_vertex_group(rig)
+
+
 def stage_by_stage(rig: cutcell.Rig, method: cutcell.Method) -> NDArray[np.float64]:
     graph = cutcell.build_graph(rig.mesh, method=method)
     assert_type(graph, cutcell.CutCellGraph)

@@ -84,7 +84,7 @@ class SceneView(JSComponent):
             self._sent = description
 
     def send(self, **parts: Unpack[ToBrowser]) -> None:
-        """Send the parts of the view that are no actors.
+        """Send the parts of the view that are no actors: see `shell/session/view_parts.py`.
 
         The last value of each is kept, for a browser that comes later.
         """

@@ -9,7 +9,7 @@ const style = stylistic.configs.customize({
   indent: 2, quotes: "double", semi: false, braceStyle: "1tbs", arrowParens: true,
 })
 
-export default [{
+export default [{ignores: ["app/frontend/vendor/preact.js"]}, {
   ...style,
   rules: {
     ...style.rules,

@@ -47,7 +47,7 @@ SETTLED = """async (limit) => {
 # Counts what the page sends. No measured speed decides how finely the page draws.
 STEADY = """
   const {send} = WebSocket.prototype
-  Object.assign(window, {sent: 0, sockets: []})
+  Object.assign(window, {sent: 0, sockets: [], drawsOnDemand: false})
   WebSocket.prototype.send = function (...parts) {
     if (!sockets.includes(this)) { sockets.push(this) }
     window.sent += 1
@@ -58,10 +58,28 @@ STEADY = """
     get: () => view?.gone ? undefined : view,  // the page deletes it when it ends
     set: (made) => {
       view = made
-      Object.assign(view.renderer.smooth, {cost: {rough: 0, full: 0}, time: () => {}})
+      const {smooth} = made.renderer
+      const draw = smooth.draw.bind(smooth)
+      Object.assign(smooth, {
+        cost: {rough: 0, full: 0},
+        time: () => {},
+        draw: (...parts) => { if (!window.drawsOnDemand) { draw(...parts) } },
+      })
     },
   })
 """
+
+# Software rendering takes most of the time of a test: pixels are made only where a test looks at
+# them. All else of a drawing (places, picks, what is seen of each actor) is computed as ever.
+ON_DEMAND = "window.drawsOnDemand = true"
+
+DRAW = """async () => {
+  if (!window.drawsOnDemand) { return }
+  await new Promise(requestAnimationFrame)
+  window.drawsOnDemand = false
+  __cutcell.renderer.draw(Boolean(__cutcell.playing), false)
+  window.drawsOnDemand = true
+}"""
 
 SCALE = 0.5
 """Size of a picture in parts of the page's: to draw a quarter of the pixels takes less time."""
@@ -199,16 +217,22 @@ visits: weakref.WeakSet[Visit] = weakref.WeakSet()
 
 
 class Visit:
-    """One person's page, as a person sees it or, `smooth` is false, with fewer pixels to draw."""
+    """One person's page, as a person sees it or, unless it is smooth, with fewer pixels to draw.
 
-    def __init__(self, browser: Browser, url: str, smooth: bool = False, **context: Any) -> None:
+    A page that is not `smooth` draws only when a test looks at it, unless `draws` says otherwise.
+    """
+
+    def __init__(
+        self, browser: Browser, url: str, smooth: bool = False, draws: bool = False, **context: Any
+    ) -> None:
         size = {"width": 1100, "height": 720}
         scale = 1 if smooth else SCALE
         self.context = browser.new_context(
             **{"viewport": size, "accept_downloads": True, "device_scale_factor": scale, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
-        self.context.add_init_script(STEADY if smooth else STEADY + ONE_SAMPLE)
+        parts = (STEADY, "" if smooth else ONE_SAMPLE, "" if smooth or draws else ON_DEMAND)
+        self.context.add_init_script("".join(parts))
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
@@ -318,6 +342,7 @@ class Visit:
         """Return the canvas as it is seen, shape (height, width, 3), int."""
         self.page.mouse.move(2, 2)
         self.settle()
+        self.page.evaluate(DRAW)
         picture = self.page.get_by_role("application").screenshot()
         with Image.open(io.BytesIO(picture)) as image:
             return np.asarray(image.convert("RGB")).astype(int)

@@ -105,14 +105,6 @@ def test_dragging_turns_the_character_and_picks_nothing(visit):
     assert changed(before, visit.look()) > 0.01
 
 
-def test_another_resolution_makes_another_graph(visit):
-    visit.panel("Graph")
-    before = visit.status.inner_text()
-    visit.slide("Resolution", "ArrowRight", 2)
-    visit.wait_until_bound()
-    assert visit.status.inner_text() != before
-
-
 def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
     visit.panel("Graph")
     before = visit.look()
@@ -213,32 +205,6 @@ def test_a_component_does_not_tell_back_what_it_was_told(visit):
     assert visit.page.evaluate(TOLD_QUICKLY) == []
 
 
-def test_the_picture_comes_out_as_a_png(visit, tmp_path):
-    with visit.page.expect_download() as download:
-        visit.button("Image, video", exact=False).click()
-        visit.page.get_by_role("menuitem", name="Picture (PNG)").click()
-    path = tmp_path / "picture.png"
-    download.value.save_as(path)
-    assert path.read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_path):
-    bad = tmp_path / "bad.glb"
-    bad.write_text("this is not a character")
-    before = visit.look()
-    points = visit.points()
-    visit.drop(bad)
-    visit.expect_text(re.compile(r"bad\.glb"))
-    visit.dismiss()
-    np.testing.assert_array_equal(visit.points(), points)
-    assert changed(before, visit.look()) < 0.001
-    visit.choose("Character", "Rabbit")
-    visit.page.wait_for_function(
-        "n => __cutcell.report().actors.body.points !== n", arg=len(points)
-    )
-    visit.wait_until_bound()
-
-
 def test_a_character_that_was_opened_stays_within_reach(visit, tmp_path):
     mine = tmp_path / "mine.glb"
     shutil.copy(demo_path("rabbit"), mine)
@@ -268,17 +234,6 @@ def test_another_character_is_seen_from_as_far_as_it_needs_in_the_graph(visit, t
     needed = visit.page.evaluate("__cutcell.insets.fit(__cutcell.renderer.insets)")
     assert visit.page.evaluate("__cutcell.orbit.distance") == pytest.approx(needed, rel=0.04)
     visit.page.set_viewport_size(size)
-
-
-def test_light_and_dark(visit):
-    light = visit.look()
-    visit.button("Toggle theme").click()
-    dark = visit.look()
-    visit.button("Toggle theme").click()
-    again = visit.look()
-    assert light[2, 2].min() > 200
-    assert dark[2, 2].max() < 80
-    assert changed(light, again) < 0.001
 
 
 def test_a_long_computation_can_be_cancelled(visit):

@@ -13,6 +13,9 @@ from tests.app.test_browser_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
+SHOWN = SMALL.removeprefix("/") + "&panel=graph&bone=chest&flat={}"
+"""The address of a mode of the flat scene."""
+
 
 def scene(visit):
     return visit.page.get_by_role("region", name=re.compile("^Flat scene"))
@@ -26,9 +29,8 @@ def says(visit, text):
     expect(scene(visit).locator("#say")).to_have_text(re.compile(text))
 
 
-def test_a_person_goes_through_the_modes(browser, url):
-    visit = Visit(browser, url + SMALL + "&panel=graph&bone=chest&flat=rays")
-    visit.wait_until_bound()
+def test_a_person_goes_through_the_modes(visit):
+    visit.go(SHOWN.format("rays"))
     says(visit, r"Ray \d+ of \d+\. Crossings: \+1 −1")
     first = scene(visit).locator("#say").inner_text()
     canvas(visit).focus()
@@ -42,17 +44,17 @@ def test_a_person_goes_through_the_modes(browser, url):
     visit.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.95 * box["height"])
     visit.page.mouse.up()
     says(visit, r"Ray 1 of")
-    visit.go(SMALL[1:] + "&panel=graph&bone=chest&flat=winding")
+    visit.go(SHOWN.format("winding"))
     says(visit, "pieces are inside")
     visit.slide("τ in this plane", "End")
     says(visit, r"τ = 0\.99")
-    visit.go(SMALL[1:] + "&panel=graph&bone=chest&flat=graph")
+    visit.go(SHOWN.format("graph"))
     canvas(visit).focus()
     visit.page.keyboard.press("Enter")
     says(visit, r"joined to 3 corners of its triangle.* Joined so far: 1\.")
     visit.button("Join all").click()
     expect(visit.button("Separate all")).to_be_visible()
-    visit.go(SMALL[1:] + "&panel=graph&bone=chest&flat=search")
+    visit.go(SHOWN.format("search"))
     says(visit, r"^0 of \d+ nodes are settled, from chest\. Which node is settled next\?")
     for _ in range(3):
         visit.button("Settle next").click()
@@ -65,20 +67,18 @@ def test_a_person_goes_through_the_modes(browser, url):
     visit.button("Into the body").click()
     expect(scene(visit)).to_have_count(0)
     visit.page.wait_for_function("!location.search.includes('flat=')")
-    visit.close()
 
 
-def test_a_step_that_is_opened_with_its_answer_shows_it(browser, url):
+def test_a_step_that_is_opened_with_its_answer_shows_it(visit):
     number = next(i for i, one in enumerate(built_in(), 1) if "flat=graph" in one.address)
-    visit = Visit(browser, f"{url}/?step={number}&answer=&resolution=16")
+    visit.go(f"?step={number}&answer=&resolution=16")
     says(visit, "joined to 3 corners of its triangle")
-    visit.close()
+    visit.button("Leave").click()
 
 
 def test_a_phone_with_reduced_motion(browser, url):
     screen = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-    query = SMALL + "&panel=graph&bone=chest&flat=rays"
-    visit = Visit(browser, url + query, reduced_motion="reduce", **screen)
+    visit = Visit(browser, f"{url}/{SHOWN.format('rays')}", reduced_motion="reduce", **screen)
     visit.wait_until_bound()
     box = canvas(visit).bounding_box()
     at = {"x": box["width"] / 2, "y": 4}
@@ -99,15 +99,13 @@ SENTENCE = """async (address) => {
   const {node, show} = sentence("Drag α to {alpha}, not {beta}.", sliders,
     (name, value) => chosen.push([name, value]))
   window.slid = (value) => show({alpha: {...sliders.alpha, value}})
-  const host = document.body.appendChild(document.createElement("div"))
+  window.host = document.body.appendChild(document.createElement("div"))
   host.style.cssText = "position: fixed; left: 300px; top: 300px; z-index: 9999"
   host.append((await stylesheet("lesson/sentence.css"))(), node)
 }"""
 
 
-def test_a_number_in_a_sentence_is_dragged_and_moved_by_keys(browser, url):
-    visit = Visit(browser, url + SMALL)
-    visit.wait_until_bound()
+def test_a_number_in_a_sentence_is_dragged_and_moved_by_keys(visit):
     page = visit.page
     page.evaluate(SENTENCE, ADDRESS)
     expect(page.get_by_text("not {beta}")).to_be_visible()
@@ -129,4 +127,4 @@ def test_a_number_in_a_sentence_is_dragged_and_moved_by_keys(browser, url):
     assert page.evaluate("chosen.every(([name]) => name === 'alpha')")
     page.evaluate("slid(0.07)")
     expect(number).to_have_text("0.07")
-    visit.close()
+    page.evaluate("host.remove()")

@@ -29,7 +29,10 @@ FRAMED = '<!doctype html><iframe width="320" height="240" srcdoc="{}"></iframe>'
 
 
 class Alone(Visit):
-    """A page without a server."""
+    """A page without a server, which draws by itself."""
+
+    def __init__(self, browser, url, **context):
+        super().__init__(browser, url, draws=True, **context)
 
     def settle(self):
         """Wait until what was chosen is drawn."""

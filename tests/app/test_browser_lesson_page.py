@@ -11,7 +11,7 @@ from cutcell_app.features.checked import read_checked
 from cutcell_app.features.learn.lesson import built_in
 from cutcell_app.headless.lesson_page import lesson_page
 from cutcell_assets import demo_path
-from tests.app.browser import IN_SIGHT, Visit, changed
+from tests.app.browser import IN_SIGHT, changed
 from tests.app.test_browser_interactive import CAMERA, LOOK, Alone, scene
 
 MAX_BYTES = 12_000_000
@@ -89,18 +89,18 @@ def opened(browser, path):
     return alone
 
 
-def test_a_lesson_is_walked_without_a_server(browser, url, path):
+def test_a_lesson_is_walked_without_a_server(browser, visit, path):
     alone = opened(browser, path)
     card = alone.page.get_by_role("article", name="Lesson")
     expect(card).to_contain_text("Does the paw move the forearm?")
-    weights = f"/?{RABBIT}&panel=weights&weights_shown=bone&bone=paw.L"
-    check_same_picture(browser, url, alone, weights)
+    weights = f"?{RABBIT}&panel=weights&weights_shown=bone&bone=paw.L"
+    check_same_picture(visit, alone, weights)
     asked = alone.look()
     card.get_by_role("button", name="No", exact=True).click()
     expect(card).to_contain_text("Right: No.")
     alone.settle()
     assert changed(asked, alone.look()) > 0.01
-    check_same_picture(browser, url, alone, f"/?{RABBIT}&panel=distance&bone=paw.L")
+    check_same_picture(visit, alone, f"?{RABBIT}&panel=distance&bone=paw.L")
 
     card.get_by_role("button", name="Next").click()
     assert alone.page.url.endswith("#step-2")
@@ -163,10 +163,9 @@ def check_flat_step(alone, card):
     expect(flat).to_be_hidden()
 
 
-def check_same_picture(browser, url, alone, address):
+def check_same_picture(visit, alone, address):
     """See that the page shows the same scene from the same camera."""
-    visit = Visit(browser, url + address)
-    visit.wait_until_bound()
+    visit.go(address)
     canvas = visit.page.get_by_role("application").bounding_box()
     alone.resize(round(canvas["width"]), round(canvas["height"]))
     alone.page.evaluate(LOOK, visit.page.evaluate(CAMERA))
@@ -174,7 +173,6 @@ def check_same_picture(browser, url, alone, address):
     difference = np.abs(scene(alone) - served).max(axis=2)
     assert np.abs(served - served[-1, 0]).max() > 100, "something is seen"
     assert (difference > 24).mean() < 3e-3
-    visit.close()
 
 
 def check_two_sliders(alone, card):

@@ -3,7 +3,6 @@
 import pytest
 
 from cutcell_app.widgets.modules import ADDRESS
-from tests.app.browser import Visit
 
 pytestmark = pytest.mark.slow
 
@@ -17,15 +16,17 @@ MISSING = """async ([address, names]) => {
 EVERYWHERE = ("field", "adornment", "number", "checkbox", "select", "resizer", "title")
 IN_MENU = ("list", "search", "item", "chosen")
 NARROW = ("sheet", "layer")
+"""In a narrow window: test_browser_welcome.py."""
 
 
 def check(visit, names):
+    """Check that the page has some parts."""
     missing = visit.page.evaluate(MISSING, [f"{ADDRESS}/page/mui.js", names])
     sentences = [f"panel-material-ui has no {name} as {part}: see mui.js" for name, part in missing]
     assert not sentences, "\n".join(sentences)
 
 
-def test_parts_of_the_widget_library_are_where_scripts_look(browser, url, visit):
+def test_parts_of_the_widget_library_are_where_scripts_look(visit):
     visit.panel("Graph")
     check(visit, EVERYWHERE)
     visit.bone.click()
@@ -33,12 +34,3 @@ def test_parts_of_the_widget_library_are_where_scripts_look(browser, url, visit)
     check(visit, IN_MENU)
     visit.page.keyboard.press("Escape")
     visit.page.get_by_role("menu").wait_for(state="hidden")
-
-
-def test_parts_of_the_sheet_are_where_scripts_look(browser, url):
-    narrow = Visit(browser, url + "/?rig=robot", viewport={"width": 420, "height": 800})
-    narrow.wait_until_bound()
-    narrow.button("Open drawer").click()
-    narrow.page.locator(".MuiDrawer-paper").wait_for()
-    check(narrow, NARROW)
-    narrow.close()

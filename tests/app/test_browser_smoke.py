@@ -17,6 +17,7 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     path = tmp_path / "my character.glb"
     shutil.copy(source, path)
     rig = cutcell.load(path)
+    visit.page.evaluate("window.drawsOnDemand = false")  # as for people: it draws by itself
     before = visit.look()
     visit.open(path)
     assert changed(before, visit.look()) > 0.02
@@ -31,3 +32,4 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     np.testing.assert_array_equal(loaded.mesh.vertices, rig.mesh.vertices)
     expected = cutcell.bind(rig, RESOLUTION).weights
     np.testing.assert_allclose(loaded.weights, expected, atol=1e-6)
+    visit.page.evaluate("window.drawsOnDemand = true")

@@ -8,6 +8,7 @@ from playwright.sync_api import expect
 
 from tests.app.browser import BIND_MS, Visit, changed
 from tests.app.small import SMALL
+from tests.app.test_browser_private import NARROW, check
 
 pytestmark = pytest.mark.slow
 
@@ -88,6 +89,7 @@ def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, u
     assert box["width"] > 400
     assert box["height"] > 400
     visit.button("Open drawer").click()
+    check(visit, NARROW)
     visit.panel("Graph")
     visit.page.get_by_role("switch", name="Mesh edges").wait_for()
     # A sheet at the bottom: what its switches change is seen above it, and can be turned.

@@ -1,13 +1,23 @@
 """Every script runs, in a tiny configuration, and prints tables that can be read."""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import cutcell
 from benchmarks import growth, large, memory, meshers, report, speed, start_up, timing
 from cutcell.weights.warm_up import warm_up
-from cutcell_lab.benchmarks import accuracy, dataset, orientation, tables, wild
+from cutcell_lab.benchmarks import (
+    accuracy,
+    dataset,
+    drop_in,
+    half_precision,
+    orientation,
+    tables,
+    wild,
+)
 from cutcell_lab.benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
 
@@ -68,6 +78,24 @@ def test_accuracy(capsys, tmp_path):
     rows = result["Accuracy of distances"]
     assert [row["connectivity"] for row in rows[:2]] == ["6", "26"]
     assert {"ball", "box", "L-bar", "**all**"} == {row["shape"] for row in rows}
+
+
+def test_prior_beside_voxels(small, capsys, monkeypatch):
+    monkeypatch.setattr(drop_in, "SETS", ["bars"])
+    monkeypatch.setattr(drop_in, "files_of", lambda group: [Path(small)])
+    drop_in.main(["--resolution", "16", "--voxels", "16"])
+    result = read_tables(capsys.readouterr().out)
+    assert len(result) == 4
+    (errors,) = (rows for title, rows in result.items() if title.startswith("L1"))
+    assert len(errors) == 9
+    assert all(0 <= float(row["voxels"]) <= 2 for row in errors)
+
+
+def test_positions_of_16_bits(small, capsys, monkeypatch):
+    monkeypatch.setattr(half_precision, "characters", lambda group: [("bar", cutcell.load(small))])
+    half_precision.main(["rigs", "--resolution", "16"])
+    result = read_tables(capsys.readouterr().out)
+    assert [row["positions"] for row in result["Both beside the artists"]] == ["own", "rounded"]
 
 
 def test_memory(small, capsys, tmp_path):

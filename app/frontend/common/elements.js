@@ -31,26 +31,6 @@ export const button = (about, ...children) =>
 /** @param {string} className @param {...(Node | string)} children */
 export const span = (className, ...children) => element("span", {className}, ...children)
 
-/** What has the focus beside an element, in the same part of the page. @param {Node} [beside] */
-export const focusIn = (beside) =>
-  /** @type {Document | ShadowRoot | undefined} */ (beside?.getRootNode())?.activeElement
-
-/**
- * Replace what is in an element; the focus stays with the control of the same name, or place.
- * @param {Element} parent @param {...Node} children
- */
-export function renew(parent, ...children) {
-  const controls = () => /** @type {NodeListOf<HTMLElement>} */ (
-    parent.querySelectorAll("button, input, [tabindex]"))
-  const nameOf = (one) => one.getAttribute("name") ?? one.dataset.id
-  const before = [...controls()]
-  const place = before.findIndex((one) => one.matches(":focus"))
-  const name = place < 0 ? null : nameOf(before[place])
-  parent.replaceChildren(...children)
-  const again = name ? [...controls()].find((one) => nameOf(one) === name) : controls()[place]
-  again?.focus()
-}
-
 /**
  * The elements that receive a key, from the innermost out. An element that was just hidden keeps
  * the focus until the next frame; its keys belong to the page, so there are none then.
@@ -73,11 +53,4 @@ export function within(element, {clientX, clientY}) {
 export function onPage(element, [x, y]) {
   const {left, top} = element.getBoundingClientRect()
   return [x + left, y + top]
-}
-
-const TAIL = 7  // letters at the end of a name that are always seen
-
-// A name that a narrow box shortens in the middle: what tells joints apart is often at its end.
-export function nameElement(text) {
-  return span("name", span("start", text.slice(0, -TAIL)), span("tail", text.slice(-TAIL)))
 }

@@ -5,13 +5,14 @@
 //
 // `node` is a <figure>. Rules: `stylesheet("lesson/small_plot.css")` in the same shadow root.
 
-import {make} from "../handles/drag_handle.js"
 import {element} from "../common/elements.js"
+import {h} from "../common/nodes.js"
 import {lengthText, weightText} from "../common/text.js"
+import {curve, sample} from "../tables/plot.js"
+import {render} from "../vendor/preact.js"
 
 const [WIDTH, HEIGHT] = [300, 130]
 const [LEFT, RIGHT, TOP, BOTTOM] = [34, 16, 20, 30]
-const DASHES = ["none", "6 3", "2 3", "8 3 2 3"]
 
 /** A part of one, as a fraction where it has a short one. @param {number} part */
 export function fractionText(part) {
@@ -59,7 +60,7 @@ export function smallPlot() {
   const node = element("figure", {hidden: true})
   const show = (plot) => {
     node.hidden = !plot
-    if (plot) { node.replaceChildren(...drawn(KINDS[plot.kind](plot))) }
+    if (plot) { render(drawn(KINDS[plot.kind](plot)), node) }
   }
   return {node, show}
 }
@@ -72,32 +73,27 @@ function drawn({curves, dots, line, x, y, says}) {
   }
   const across = place(x, LEFT, WIDTH - RIGHT)
   const up = place(y, HEIGHT - BOTTOM, TOP)
-  const holder = element("div")
-  const svg = make("svg", "plot", holder, {role: "img", viewBox: `0 0 ${WIDTH} ${HEIGHT}`})
-  svg.setAttribute("aria-label", `${y.label} over ${x.label}: ${says.join("; ")}`)
-  const text = (content, className, [left, top]) => {
-    make("text", className, svg, {x: left, y: top}).textContent = content
-  }
-  const path = (points, attributes) =>
-    make("path", "curve", svg, {d: `M${points.map((p) => p.join(" ")).join("L")}`, ...attributes})
-  path([[LEFT, TOP], [LEFT, HEIGHT - BOTTOM], [WIDTH - RIGHT, HEIGHT - BOTTOM]], {class: "axis"})
-  for (const tick of x.ticks) { text(x.text(tick), "tick", [across(tick), HEIGHT - BOTTOM + 12]) }
-  for (const tick of y.ticks) { text(y.text(tick), "tick end", [LEFT - 4, up(tick) + 4]) }
-  text(x.label, "tick", [(LEFT + WIDTH - RIGHT) / 2, HEIGHT - 4])
-  if (line) { path([[across(line), TOP], [across(line), HEIGHT - BOTTOM]], {class: "now"}) }
-  curves.forEach(({points}, i) => path(points.map(([a, b]) => [across(a), up(b)]),
-    {style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`, class: `curve c${i}`}))
-  for (const {name, at: [a, b], chosen, isNamed} of dots) {
-    const [className, r] = chosen || isNamed ? ["dot chosen", 5] : ["dot", 3.5]
-    make("circle", isNamed ? "dot mark" : className, svg, {cx: across(a), cy: up(b), r})
-    if (chosen || isNamed) { text(name, "name", [across(a) + 8, up(b) - 6]) }
-  }
-  const key = element("figcaption", {}, y.label, ...curves.map(({name}, i) => {
-    const sample = element("span")
-    make("path", "curve", make("svg", "", sample, {viewBox: "0 0 24 6", width: 24, height: 6}),
-      {d: "M0 3H24", style: `stroke-dasharray: ${DASHES[i % DASHES.length]}`, class: `curve c${i}`})
-    sample.append(name)
-    return sample
-  }))
-  return [key, svg]
+  const text = (content, className, [left, top]) =>
+    h("text", {class: className, x: left, y: top}, content)
+  const vertical = (at, className, end = "") =>
+    h("path", {class: className, d: `M${at} ${TOP}V${HEIGHT - BOTTOM}${end}`})
+  const label = `${y.label} over ${x.label}: ${says.join("; ")}`
+  return [
+    h("figcaption", {}, y.label, curves.map(({name}, i) => sample(i, name))),
+    h("svg", {"class": "plot", "role": "img", "aria-label": label,
+      "viewBox": `0 0 ${WIDTH} ${HEIGHT}`},
+    vertical(LEFT, "axis", `H${WIDTH - RIGHT}`),
+    x.ticks.map((tick) => text(x.text(tick), "tick", [across(tick), HEIGHT - BOTTOM + 12])),
+    y.ticks.map((tick) => text(y.text(tick), "tick end", [LEFT - 4, up(tick) + 4])),
+    text(x.label, "tick", [(LEFT + WIDTH - RIGHT) / 2, HEIGHT - 4]),
+    line && vertical(across(line), "now"),
+    curves.map(({points}, i) => curve(i, points.map(([a, b]) => [across(a), up(b)]))),
+    dots.map(({name, at: [a, b], chosen, isNamed}) => [
+      h("circle", {
+        class: isNamed ? "dot mark" : chosen ? "dot chosen" : "dot",
+        cx: across(a), cy: up(b), r: chosen || isNamed ? 5 : 3.5,
+      }),
+      (chosen || isNamed) && text(name, "name", [across(a) + 8, up(b) - 6]),
+    ])),
+  ]
 }

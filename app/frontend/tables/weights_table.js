@@ -1,70 +1,64 @@
 // A table of weights: headings sort it, cells are edited, and a click on a row chooses its vertex.
 
-import {button, element, renew} from "../common/elements.js"
+import {button, drawn, h, numberBox} from "../common/nodes.js"
 import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("tables/weights_table.css")
 
 /** @param {{model: Model}} widget */
 export function render({model}) {
-  const table = element("table", {aria: {label: model.label}})
-  const pager = element("nav", {aria: {label: "Pages of the table"}})
-  const fill = () => {
-    const {columns = [], rows = [], totals = [], order = [], pages = [0, 0]} = model.content
-    const [sorted, down] = order
-    const head = element("tr", {}, ...columns.map(([title], column) => {
-      const sort = () => model.send_msg({type: "sort", column})
-      const is = column === sorted
-      const heading = button({name: `sort-${column}`, on: {click: sort}, title},
-        title, is ? (down ? " ↓" : " ↑") : "")
-      const th = element("th", {scope: "col"}, heading)
-      if (is) { th.setAttribute("aria-sort", down ? "descending" : "ascending") }
-      return th
-    }))
-    const body = rows.map(([vertex, ...values]) => {
-      const click = () => model.send_msg({type: "pick-vertex", vertex})
-      const name = button({name: `row-${vertex}`, on: {click}, title: "Show this vertex"},
-        String(vertex))
-      const cells = values.map((value, i) => cell(vertex, value, i + 1, columns[i + 1]))
-      return element("tr", {}, element("th", {scope: "row"}, name), ...cells)
-    })
-    const foot = totals.map(([name, ...values]) => element("tr", {},
-      element("th", {scope: "row"}, name),
-      ...values.map((value) => element("td", {}, value.toFixed(name === "Total" ? 1 : 3)))))
-    table.hidden = !columns.length
-    renew(table, element("thead", {}, head), element("tbody", {}, ...body),
-      element("tfoot", {}, ...foot))
-    turn(...pages)
-  }
   const cell = (vertex, value, column, [title, edited]) => {
     const text = value.toFixed(3)
-    if (!edited) { return element("td", {}, text) }
-    const put = () => {
+    if (!edited) { return h("td", {}, text) }
+    const put = ({target: input}) => {
       const entered = Number(input.value.replace(",", "."))
       const is = input.value.trim() !== "" && entered >= 0 && entered <= 1
       if (!is || input.value === text) { input.value = text; return }
+      input.defaultValue = input.value
       model.send_msg({type: "edit-weight", vertex, column, value: entered})
     }
     const keydown = (e) => {
-      if (e.key === "Enter") { input.blur(); e.preventDefault() }
-      if (e.key === "Escape") { input.value = text; input.blur(); e.stopPropagation() }
+      if (e.key === "Enter") { e.target.blur(); e.preventDefault() }
+      if (e.key === "Escape") { e.target.value = text; e.target.blur(); e.stopPropagation() }
     }
-    const input = element("input", {
-      type: "text", inputMode: "decimal", value: text, name: `cell-${vertex}-${column}`,
-      aria: {label: `Weight of ${title} at vertex ${vertex}`}, on: {change: put, keydown},
-    })
-    input.classList.toggle("zero", value === 0)
-    return element("td", {}, input)
+    return h("td", {}, numberBox(text, {
+      "type": "text", "inputmode": "decimal", "name": `cell-${vertex}-${column}`,
+      "class": value === 0 ? "zero" : null, "onchange": put, "onkeydown": keydown,
+      "aria-label": `Weight of ${title} at vertex ${vertex}`,
+    }))
   }
-  const turn = (page, pages) => {
-    pager.hidden = pages < 2
-    const go = (label, to, text) => button({
-      disabled: to < 0 || to >= pages, aria: {label}, on: {click: () =>
-        model.send_msg({type: "page", page: to})}}, text)
-    pager.replaceChildren(go("Previous page", page - 1, "‹"),
-      element("span", {}, `${page + 1} of ${pages}`), go("Next page", page + 1, "›"))
+  const draw = () => {
+    const {columns = [], rows = [], totals = [], order = [], pages: turns = [0, 0]} = model.content
+    const [[sorted, down], [page, pages]] = [order, turns]
+    const heading = ([title], column) => {
+      const is = column === sorted
+      const sort = () => model.send_msg({type: "sort", column})
+      return h("th", {"scope": "col", "aria-sort": is ? (down ? "descending" : "ascending") : null},
+        button({title, name: `sort-${column}`, onclick: sort}, title,
+          is ? (down ? " ↓" : " ↑") : ""))
+    }
+    const row = ([vertex, ...values]) => {
+      const pick = () => model.send_msg({type: "pick-vertex", vertex})
+      return h("tr", {key: vertex},
+        h("th", {scope: "row"}, button(
+          {name: `row-${vertex}`, title: "Show this vertex", onclick: pick}, vertex)),
+        values.map((value, i) => cell(vertex, value, i + 1, columns[i + 1])))
+    }
+    const total = ([name, ...values]) => h("tr", {}, h("th", {scope: "row"}, name),
+      values.map((value) => h("td", {}, value.toFixed(name === "Total" ? 1 : 3))))
+    const turn = (label, to, text) => button({
+      "disabled": to < 0 || to >= pages, "aria-label": label,
+      "onclick": () => model.send_msg({type: "page", page: to}),
+    }, text)
+    return [
+      h("div", {class: "scroll"},
+        h("table", {"aria-label": model.label, "hidden": !columns.length},
+          h("thead", {}, h("tr", {}, columns.map(heading))),
+          h("tbody", {}, rows.map(row)), h("tfoot", {}, totals.map(total)))),
+      h("nav", {"aria-label": "Pages of the table", "hidden": pages < 2},
+        turn("Previous page", page - 1, "‹"), h("span", {}, `${page + 1} of ${pages}`),
+        turn("Next page", page + 1, "›")),
+    ]
   }
-  model.on("content", fill)
-  fill()
-  return element("div", {}, styled(), element("div", {className: "scroll"}, table), pager)
+  return drawn(model, ["content"], styled, draw)
 }

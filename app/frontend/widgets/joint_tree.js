@@ -1,13 +1,16 @@
 // The joints as a tree: one stop of the Tab key, the arrows walk in it, Space lets a joint carry
 // weight or not.
 
-import {element, focusIn, nameElement, span} from "../common/elements.js"
+import {element} from "../common/elements.js"
+import {h, icon, nameOf, span} from "../common/nodes.js"
 import {closedAtFirst, Forest} from "./forest.js"
+import {render as renderNodes} from "../vendor/preact.js"
 import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("widgets/joint_tree.css")
 
 const LOCK = '<path d="M6 11h12v9H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"/>'
+const HELP = "Space or click: deforms or not. Arrows walk, open and close."
 
 const percent = (part) => part === null ? "–" : part === 0 ? "0" : part < 0.0005 ? "<.1"
   : (100 * part).toFixed(part < 0.0995 ? 1 : 0)
@@ -16,17 +19,14 @@ const percent = (part) => part === null ? "–" : part === 0 ? "0" : part < 0.00
 function contents(row, most) {
   const {name, short, why, color, control, locked, gain, ours, file} = row
   const own = {"--own": color}
-  const shares = [["ours", ours], ["file", file]].filter(([, part]) => part !== null)
-  const bars = shares.map(([className, part]) => element("i", {
-    className, style: {...own, width: `${100 * Math.min(1, part / most)}%`},
-  }))
-  const lock = {className: "lock", icon: LOCK, title: "Lock to file weights"}
+  const bars = [["ours", ours], ["file", file]].map(([kind, part]) => part !== null
+    && h("i", {class: kind, style: {...own, width: `${100 * Math.min(1, part / most)}%`}}))
   return [
-    element("span", {className: control ? "chip control" : "chip", style: own}),
-    Object.assign(nameElement(short), {title: why ? `${name}: ${why}` : name}),
-    ...locked ? [element("span", lock)] : [],
-    ...gain !== 1 ? [span("gain", `×${Number(gain.toPrecision(2))}`)] : [],
-    element("span", {className: "bars", title: spoken(row).slice(1).join(", ")}, ...bars),
+    h("span", {class: control ? "chip control" : "chip", style: own}),
+    nameOf(short, why ? `${name}: ${why}` : name),
+    locked && h("span", {class: "lock", title: "Lock to file weights"}, icon(LOCK)),
+    gain !== 1 && span("gain", `×${Number(gain.toPrecision(2))}`),
+    h("span", {class: "bars", title: spoken(row).slice(1).join(", ")}, ...bars),
     span("share", percent(ours ?? file)),
   ]
 }
@@ -43,84 +43,70 @@ function spoken({name, control, ours, file, locked}) {
 
 /** @param {{model: Model}} widget */
 export function render({model}) {
-  let top = 0  // heard, not asked for: to ask makes the browser lay out the whole page at once
-  const list = element("div", {
-    className: "tree", aria: {role: "tree", label: "Joints", describedby: "how"},
-    on: {scroll: () => { top = list.scrollTop }, keydown: (e) => press(e)},
-  })
-  const group = {role: "group", label: "Doubtful joints"}
-  const doubts = element("div", {className: "doubts", aria: group})
-  const title = "Space or click: deforms or not. Arrows walk, open and close."
-  const root = element("div", {}, styled(), doubts,
-    element("div", {className: "head", title}, span("", "✓ deforms"), span("", "% of the skin")),
-    list, element("div", {id: "how", hidden: true},
-      "Enter chooses, Space lets a joint carry weight or not"))
+  const root = element("div")
   let forest = new Forest([], new Set())
   let names = ""
   let cursor = -1
+  let most = 1
+
   const item = (i) => {
     const row = forest.rows[i]
     const {joint, level, carries, changed} = row
     const parent = forest.hasChildren(i)
     const stopping = (act) => (e) => { e.stopPropagation(); act(i) }
-    const made = element("div", {
-      className: carries ? "item" : "item idle", on: {click: () => choose(i)},
-      style: {"padding-left": `${4 + 6 * Math.min(level, 8)}px`},
-      aria: {
-        role: "treeitem", level: level + 1, checked: carries, label: spoken(row).join(", "),
-        ...parent ? {expanded: !forest.closed.has(joint)} : {},
-      },
-    }, element("span", {className: "twist", on: {click: stopping(toggle)}}, parent ? "▾" : ""),
-    element("span", {
-      className: changed ? "box changed" : "box", on: {click: stopping(carry)},
+    return h("div", {
+      "key": joint, "class": carries ? "item" : "item idle", "role": "treeitem",
+      "style": {paddingLeft: `${4 + 6 * Math.min(level, 8)}px`}, "onclick": () => choose(i),
+      "aria-level": level + 1, "aria-checked": String(carries),
+      "aria-selected": String(joint === model.chosen), "aria-label": spoken(row).join(", "),
+      "aria-expanded": parent ? String(!forest.closed.has(joint)) : null,
+      "tabindex": joint === cursor ? 0 : -1, "data-joint": joint,
+    }, h("span", {class: "twist", onclick: stopping(toggle)}, parent ? "▾" : ""),
+    h("span", {
+      class: changed ? "box changed" : "box", onclick: stopping(carry),
       title: carries ? "Deforms the mesh" : "Does not deform the mesh",
-    }, carries ? "✓" : ""), ...contents(row, most))
-    made.dataset.joint = joint
-    return made
+    }, carries ? "✓" : ""), contents(row, most))
   }
 
-  const doubtful = ({joint, name, short, why, carries, ours}) => element("label",
-    {className: "item"}, element("input", {
-      type: "checkbox", checked: carries, aria: {role: "switch", label: `${name} deforms the mesh`},
-      on: {change: (e) => model.send_msg({type: "carry", joint, on: e.target.checked})},
-    }), nameElement(short), span("why", why), span("share", percent(ours)))
+  const doubtful = ({joint, name, short, why, carries, ours}) => h("label",
+    {key: joint, class: "item"}, h("input", {
+      "type": "checkbox", "role": "switch", "checked": carries,
+      "aria-label": `${name} deforms the mesh`,
+      "onchange": (e) => model.send_msg({type: "carry", joint, on: e.target.checked}),
+    }), nameOf(short), span("why", why), span("share", percent(ours)))
 
-  let most = 1
+  const draw = () => {
+    if (!forest.at.has(cursor)) {
+      cursor = forest.at.has(model.chosen) ? model.chosen : forest.rows[0]?.joint ?? -1
+    }
+    const doubts = model.rows.filter((row) => row.doubtful)
+      .sort((a, b) => (b.ours ?? 0) - (a.ours ?? 0))
+    renderNodes([
+      h("div", {"class": "doubts", "role": "group", "aria-label": "Doubtful joints"},
+        doubts.length ? h("div", {class: "head"},
+          span("", "Doubtful joints"), span("", "% of the skin")) : null, doubts.map(doubtful)),
+      h("div", {class: "head", title: HELP}, span("", "✓ deforms"), span("", "% of the skin")),
+      h("div", {
+        "class": "tree", "role": "tree", "aria-label": "Joints", "aria-describedby": "how",
+        "onkeydown": press,
+      }, forest.seen().map(item)),
+      h("div", {id: "how", hidden: true}, "Enter chooses, Space lets a joint carry weight or not"),
+    ], root)
+  }
   const fill = () => {
     const {rows} = model
     const now = rows.map(({joint, name}) => `${joint} ${name}`).join("\n")
-    const held = focusIn(root)?.getAttribute("role") === "treeitem"
     forest = new Forest(rows, now === names ? forest.closed : closedAtFirst(rows))
     if (now !== names && model.chosen >= 0) { forest.reveal(model.chosen) }
     names = now
     most = Math.max(1e-9, ...rows.map(({ours, file}) => Math.max(ours ?? 0, file ?? 0)))
-    const listed = rows.filter((row) => row.doubtful).sort((a, b) => (b.ours ?? 0) - (a.ours ?? 0))
-    const head = element("div", {className: "head"},
-      span("", "Doubtful joints"), span("", "% of the skin"))
-    doubts.replaceChildren(...listed.length ? [head, ...listed.map(doubtful)] : [])
-    draw(held)
-  }
-  const draw = (held) => {
-    const was = top
-    if (!forest.at.has(cursor)) {
-      cursor = forest.at.has(model.chosen) ? model.chosen : forest.rows[0]?.joint ?? -1
-    }
-    list.replaceChildren(...forest.seen().map(item))
-    if (was) { list.scrollTop = was }
-    mark()
-    if (held) { focus(cursor) }
-  }
-  const mark = () => {
-    for (const one of /** @type {NodeListOf<HTMLElement>} */ (list.querySelectorAll(".item"))) {
-      const joint = Number(one.dataset.joint)
-      one.setAttribute("aria-selected", String(joint === model.chosen))
-      one.tabIndex = joint === cursor ? 0 : -1
-    }
+    draw()
   }
   /** @returns {HTMLElement | null} */
-  const find = (joint) => list.querySelector(`[data-joint="${joint}"]`)
+  const find = (joint) => root.querySelector(`[data-joint="${joint}"]`)
   const show = (one) => {
     if (!one) { return }
+    const list = one.parentElement
     const above = one.offsetTop - list.scrollTop
     const below = above + one.offsetHeight - list.clientHeight
     if (above < 0) { list.scrollTop += above - 40 }
@@ -128,7 +114,7 @@ export function render({model}) {
   }
   const focus = (joint) => {
     cursor = joint
-    mark()
+    draw()
     const one = find(joint)
     one?.focus({preventScroll: true})
     show(one)
@@ -146,8 +132,7 @@ export function render({model}) {
     if (!forest.hasChildren(i)) { return }
     const close = open === undefined ? !forest.closed.has(joint) : !open
     if (close) { forest.closed.add(joint) } else { forest.closed.delete(joint) }
-    cursor = joint
-    draw(true)
+    focus(joint)
   }
 
   const press = (e) => {
@@ -175,12 +160,11 @@ export function render({model}) {
   model.on("rows", fill)
   model.on("chosen", () => {
     forest.reveal(model.chosen)
-    const held = focusIn(root)?.getAttribute("role") === "treeitem"
-    if (!held) { cursor = model.chosen }
-    draw(held)
+    if (!find(cursor)?.matches(":focus")) { cursor = model.chosen }
+    draw()
     show(find(model.chosen))
   })
   fill()
   requestAnimationFrame(() => show(find(model.chosen)))
-  return root
+  return element("div", {}, styled(), root)
 }

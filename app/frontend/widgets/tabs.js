@@ -1,6 +1,6 @@
 // The strip of tabs in the sidebar: an icon and a word each, one of them chosen.
 
-import {button, element} from "../common/elements.js"
+import {button, drawn, h, icon} from "../common/nodes.js"
 import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("widgets/tabs.css")
@@ -8,28 +8,22 @@ const styled = await stylesheet("widgets/tabs.css")
 /** @param {{model: Model}} widget */
 export function render({model}) {
   const ids = model.tabs.map(([id]) => id)
-  const tabs = model.tabs.map(([id, title, icon]) =>
-    button({aria: {role: "tab"}, icon, on: {click: () => { model.value = id }}}, title))
-  const show = () => tabs.forEach((tab, i) => {
-    const chosen = ids[i] === model.value
-    tab.setAttribute("aria-selected", chosen)
-    tab.tabIndex = chosen ? 0 : -1
-  })
   const walk = (e) => {
-    const now = tabs.indexOf(e.target)
+    const now = ids.indexOf(model.value)
     const next = {
-      ArrowLeft: now - 1, ArrowRight: now + 1, Home: 0, End: tabs.length - 1,
+      ArrowLeft: now - 1, ArrowRight: now + 1, Home: 0, End: ids.length - 1,
     }[e.key]
     if (next === undefined) { return }
     e.preventDefault()
     e.stopPropagation()
-    const i = (next + tabs.length) % tabs.length
-    model.value = ids[i]
-    tabs[i].focus()
+    model.value = ids.at(next % ids.length)
+    e.currentTarget.children[ids.indexOf(model.value)].focus()
   }
-  model.on("value", show)
-  show()
-  const aria = {role: "tablist", label: model.label}
-  const strip = element("div", {className: "strip", aria, on: {keydown: walk}}, ...tabs)
-  return element("section", {}, styled(), strip)
+  const tab = ([id, title, drawing]) => button({
+    "role": "tab", "aria-selected": String(id === model.value),
+    "tabindex": id === model.value ? 0 : -1, "onclick": () => { model.value = id },
+  }, icon(drawing), title)
+  const about = {"class": "strip", "role": "tablist", "aria-label": model.label}
+  return drawn(model, ["value"], styled, () =>
+    h("div", {...about, onkeydown: walk}, model.tabs.map(tab)))
 }

@@ -47,13 +47,26 @@ def read(path: Path, accessories: bool = False, bare: bool = False) -> Rig:
         raise SkeletonError("has no joints")
     weights = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
     parents, names = _parents(arrays, count), _names(arrays, count)
-    warnings = [HALVES] if any(map(has_halves, names)) else []
+    warnings = rounding_notes(arrays["vertices"], mesh)
+    warnings += [HALVES] if any(map(has_halves, names)) else []
     skeleton = Skeleton(joints, parents, tuple(map(whole_characters, names)))
     stored = arrays.get(DEFORM_KEY)
     if stored is not None and (stored.dtype != np.bool_ or stored.shape != (count,)):
         warnings.append(f"{DEFORM_KEY} is ignored; it is no array of true or false for each joint")
         stored = None
     return loaded_rig(mesh, skeleton, weights, path.stem, stored, warnings)
+
+
+def rounding_notes(positions: NDArray, mesh: TriangleMesh) -> list[str]:
+    """Say how many triangles of a mesh have collapsed where its positions have 16 bits."""
+    if positions.dtype != np.float16 or mesh.welded.is_whole.all():
+        return []
+    lost = int(np.count_nonzero(~mesh.welded.is_whole))
+    return [
+        f"{lost:,} of {len(mesh.faces):,} triangles have collapsed; positions are stored in 16 "
+        "bits, which moves a vertex by up to a 4,000th of its distance from the origin. Read the "
+        "original file for weights that follow its shape"
+    ]
 
 
 def read_skeleton(path: Path) -> SkeletonFile:

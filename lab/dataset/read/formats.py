@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from cutcell.checks import one_line
 from cutcell.errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
 from cutcell.geometry.edges import find_edges
-from cutcell.io.formats.articulation import HEADERS, write
+from cutcell.io.formats.articulation import HEADERS, rounding_notes, write
 from cutcell.io.weights import normalised, with_deform
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
@@ -56,7 +56,8 @@ def read_unirig(data: bytes, name: str) -> Rig:
             )
         weights = normalised(np.where(np.isfinite(skin) & (skin > 0), skin, 0.0))
     skeleton, weights, warnings = with_deform(mesh, skeleton, weights)
-    return Rig(mesh, skeleton, weights, name=name, warnings=tuple(warnings))
+    notes = rounding_notes(np.asarray(arrays["vertices"]), mesh)
+    return Rig(mesh, skeleton, weights, name=name, warnings=(*notes, *warnings))
 
 
 def _members(data: bytes, name: str) -> dict[str, Any]:

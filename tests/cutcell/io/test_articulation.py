@@ -159,3 +159,15 @@ def test_damaged_archives_never_escape_as_anything_else(tmp_path, data):
     else:
         return
     assert "bad.npz" in message
+
+
+def test_triangles_that_16_bits_collapse_are_counted(tmp_path):
+    aside = np.array([4000.0, 0, 0])  # float16 has steps of 2 there
+    vertices = (COLUMN + aside).astype(np.float16)
+    rig = cutcell.load(write(tmp_path, vertices=vertices, joints=REST + aside))
+    collapsed = int((~rig.mesh.welded.is_whole).sum())
+    assert collapsed > 0
+    (warning,) = [text for text in rig.warnings if "16" in text]
+    assert warning.startswith(f"{collapsed} of {len(FACES)} ")
+    whole = cutcell.load(write(tmp_path, vertices=COLUMN.astype(np.float16)))
+    assert not [text for text in whole.warnings if "16" in text]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....errors import FileError
+from ....errors import FileError, MissingLibraryError
 from ....isolated.run import WorkFailedError, run_isolated
 from ..buffer import BufferWriter
 from ..constants import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, ROUNDED, TRIANGLES, WIDTHS
@@ -99,8 +99,14 @@ def _decoded(document: Document, compressed: dict[str, Any], user: str) -> NDArr
         raise FileError(
             f"{user}: {length} compressed bytes cannot hold {count} elements of {stride} bytes"
         )
-    import meshopt
-
+    try:
+        import meshopt
+    except ImportError:
+        raise MissingLibraryError(
+            "the file is compressed by meshopt, whose decoder is not installed; try: pip install "
+            "meshopt (it needs a C++ compiler where there is no wheel), or save the file "
+            "without compression"
+        ) from None
     try:
         return meshopt.decode_gltf_buffer(
             buffer[start : start + length], count, stride, mode, compressed.get("filter")
@@ -158,7 +164,7 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
     memory = DRACO_MIN_MEMORY + DRACO_MEMORY_A_BYTE * len(data)
     task, who = "cutcell.isolated.draco:decode", "the Draco decoder"
     try:
-        return run_isolated(task, job, seconds, who, memory)
+        return run_isolated(task, job, seconds, who, memory, extra="DracoPy")
     except WorkFailedError as e:
         raise FileError(f"its Draco compression cannot be undone: {e}") from None
 

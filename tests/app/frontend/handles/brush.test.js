@@ -136,7 +136,7 @@ test("a second finger takes the stroke back, and both move the camera", () => {
   send("pointerdown", 10, 10)
   assert.ok(!send("pointerdown", 60, 60, {pointerId: 2}))
   assert.deepEqual(handed, [[1, [10, 10]]])
-  assert.deepEqual(told.at(-1), {type: "brush", cancelled: true})
+  assert.deepEqual(told.at(-1), {type: "paint", cancelled: true})
   assert.ok(!made.held)
   assert.ok(!send("pointermove", 20, 20), "and not the brush")
 })

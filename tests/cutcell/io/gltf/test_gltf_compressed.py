@@ -207,6 +207,11 @@ class TestMeshopt:
                 reported = str(error)
             assert reported.startswith("rig.glb: ")
 
+    def test_a_decoder_that_is_not_installed_is_named(self, loaded, monkeypatch):
+        monkeypatch.setitem(sys.modules, "meshopt", None)
+        with pytest.raises(cutcell.MissingLibraryError, match=r"^rig\.glb: .*pip install meshopt"):
+            loaded(meshopt_of(column()))
+
     def test_a_view_without_any_bytes_is_named(self, loaded):
         builder = meshopt_of(column())
         del builder.json["bufferViews"][1]["extensions"]
