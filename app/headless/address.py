@@ -68,9 +68,9 @@ def choices_at(
     """
     replaced = {*explicit, *(name for one in explicit for name in REPLACED.get(one, ()))}
     rest = {name: value for name, value in address.items() if name not in replaced}
-    own = {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
+    named = dict(fields)
+    named |= {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
     method = chosen_method({**options, **{n: rest.pop(n) for n in METHOD if n in rest}})
-    named: dict[str, Any] = {**fields, **own}
     return Choices(**named, settings={**rest, **settings}, method=method)
 
 
