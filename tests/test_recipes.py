@@ -9,24 +9,32 @@ from pathlib import Path
 
 import pytest
 
-from cutcell_app.features.builders import BUILDERS
-from cutcell_app.features.scenes import SCENES
+from cutcell_app.features import FEATURES
 from cutcell_app.features.state import PANELS
 from tests.test_layers import ROOT
 
 PANEL = """
 from cutcell_app.shell.session.begin import begin
-from cutcell_app.features.builders import BUILDERS
-from cutcell_app.features.scenes import resolve
+from cutcell_app.features import FEATURES
+from cutcell_app.widgets.controls import draw
+from cutcell_app.headless.choices import Choices
+from cutcell_app.headless.scene import describe
 from tests.viewers.arm import arm_rig
 from tests.app.loop import Loop
 loop = Loop()
 session = begin(loop)
 session.state.param.update(panel="size", rig=arm_rig())
-assert BUILDERS["size"](session).objects[1].value is True
-loop.run_until(lambda: session.state.size is not None)
+assert draw(session, FEATURES["size"].controls, "size").objects[1].value is True
+loop.rest(session)
 assert session.state.size > 0
-assert "body" in resolve(session.state).actors
+title = session.view._next.legend.title
+assert title.startswith("Size")
+assert session.view.last_sent("points") == {"size limit": [0, 1, 0]}
+session.view._handle_msg({"type": "move-point", "name": "size limit", "position": [0, 0.3, 0]})
+assert session.state.size_limit == 0.3
+assert session.view.last_sent("points") == {"size limit": [0, 0.3, 0]}
+drawn = describe(arm_rig(), Choices("size"), resolution=8)
+assert "body" in drawn.actors and drawn.legend.title == title
 """
 OPTION = """
 from typer.testing import CliRunner
@@ -34,7 +42,8 @@ import cutcell
 from cutcell.cli.app import app
 from cutcell.graph.fingerprint import graph_fingerprint
 from cutcell_app.shell.session.begin import begin
-from cutcell_app.features.builders import BUILDERS
+from cutcell_app.features import FEATURES
+from cutcell_app.widgets.controls import draw
 mesh = cutcell.TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]])
 try:
     cutcell.build_graph(mesh, 8, strict=True)
@@ -47,7 +56,8 @@ assert fingerprints[0] != fingerprints[1]
 run = CliRunner(env={"COLUMNS": "120", "TERM": "dumb"}).invoke
 assert "--strict" in run(app, ["graph", "--help"]).output
 session = begin(lambda act: act())
-labels = [getattr(one, "name", "") for one in BUILDERS["graph"](session).select()]
+controls = draw(session, FEATURES["graph"].controls, "graph")
+labels = [getattr(one, "name", "") for one in controls.select()]
 assert session.state.strict is False and "Reject unused vertices" in labels
 """
 METRIC = """
@@ -105,7 +115,7 @@ def follow(lines: list[str], path: Path) -> None:
 @pytest.mark.parametrize(
     ("recipe", "most", "check"),
     [
-        ("Adding a panel", 6, PANEL),
+        ("Adding a panel", 7, PANEL),
         ("Adding an option of the method", 3, OPTION),
         ("Adding a metric", 1, METRIC),
         ("Adding a file format", 2, FORMAT),
@@ -134,4 +144,6 @@ def test_a_recipe_is_enough(recipe, most, check, tmp_path):
 
 
 def test_every_panel_has_a_scene_and_controls():
-    assert list(SCENES) == list(BUILDERS) == list(PANELS)
+    for name in PANELS:
+        assert callable(FEATURES[name].scene)
+        assert FEATURES[name].controls is not None

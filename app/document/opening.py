@@ -33,6 +33,7 @@ from .look import set_camera
 from .method import chosen_by
 from .session import Session
 from .side_by_side import carried
+from .state import State
 
 LOADING = "load"
 
@@ -256,7 +257,7 @@ def _stored(session: Session, text: str) -> Edits:
     return edits
 
 
-def _rig(state: Any, own: Rig, repair: Repair | None, edits: Edits) -> Rig:
+def _rig(state: State, own: Rig, repair: Repair | None, edits: Edits) -> Rig:
     """Return the rig of a document, which is the open one where nothing of it differs."""
     shown: Rig = state.rig
     is_open = own is state.own and repair == state.repair and edits == state.edits

@@ -1,12 +1,13 @@
 """Selected vertices of the open character."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.rig import TriangleMesh
+
+from .state import State
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +24,7 @@ class Selection:
     chosen: NDArray[np.bool_]
 
 
-def selected(state: Any) -> NDArray[np.bool_] | None:
+def selected(state: State) -> NDArray[np.bool_] | None:
     """Return which vertices strokes are limited to, shape (n,); None for no limit."""
     selection = state.brush_selection
     if selection is None or state.rig is None or selection.mesh is not state.rig.mesh:
@@ -32,7 +33,7 @@ def selected(state: Any) -> NDArray[np.bool_] | None:
     return chosen if chosen.any() else None
 
 
-def selected_vertices(state: Any) -> NDArray[np.intp]:
+def selected_vertices(state: State) -> NDArray[np.intp]:
     """Return the selected vertices, shape (k,); none without a selection."""
     chosen = selected(state)
     return np.flatnonzero([] if chosen is None else chosen)

@@ -13,14 +13,13 @@ from cutcell_viewers.description import Description
 
 from ..derive.engine import Engine
 from ..derive.jobs import Schedule
-from ..derive.memo import Memo
 from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
-from ..messages.received import Message
-from ..messages.sent import ToBrowser
 from ..server.messages import error_text
+from ..server.protocol.received import Message
+from ..server.protocol.sent import ToBrowser
 from .document import Document, History
 from .state import State
 
@@ -162,11 +161,6 @@ class Session:
         """
         self.state.param.trigger(choice)
         self.fail(error)
-
-    @property
-    def memo(self) -> Memo:
-        """Costly steps of what is shown of the state."""
-        return self.state.memo
 
     @property
     def folder(self) -> Path:

@@ -1,6 +1,5 @@
 """Scenes of the state: pure functions, one for each panel."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -8,28 +7,20 @@ from cutcell_viewers.description import Actor, Description, Legend, with_colorma
 from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
 from cutcell_viewers.skin import Skin
 
-from ..derive.memo import Memo
 from ..document.state import State
-from . import modules
+from . import FEATURES
 from .state import PANELS
-
-__all__ = ["SCENES", "Memo", "following", "resolve"]
-
-SCENES: dict[str, Callable[[State, Memo], Description]] = {
-    panel: module.scene for panel, module in modules("scene").items()
-}
-"""The scene of each panel, for a state with a rig."""
 
 RIGID = "parts fixed to one bone"
 """Legend of the grey parts of a coloured body."""
 
 
-def resolve(state: State, memo: Memo | None = None) -> Description:
-    """Return the scene of a state; a memo only speeds up a series of calls."""
+def resolve(state: State) -> Description:
+    """Return the scene of a state."""
     if state.rig is None:
         return Description()
     panel = state.panel if state.is_panel_usable else "graph"
-    whole = SCENES[panel](state, memo or Memo())
+    whole = FEATURES[panel].scene(state)
     blending: Any = state.blending if PANELS[panel].poses else "linear"
     whole = with_colormap(whole, state.colormap)
     whole = replace(whole, actors={**whole.actors, **state.actors}, blending=blending)
@@ -39,20 +30,19 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     return replace(whole, legend=replace(whole.legend, swatches=swatches))
 
 
-def following(state: State, memo: Memo | None = None) -> Description:
+def following(state: State) -> Description:
     """Return the scene of a state with weights during a motion.
 
     The body follows the joints on every panel; actors that cannot follow are left out, and the body
     need not be transparent for them.
     """
-    memo = memo or Memo()
-    whole = resolve(state, memo)
+    whole = resolve(state)
     actors = dict(whole.actors)
     bodies = [name for name in actors if name.startswith("body") and actors[name].skin is None]
     if bodies:
         # The same entry of the memo as in `character`.
         inputs = (state.rig, state.weights)
-        skin = memo("skin", inputs, lambda: Skin.of_weights(state.weights))
+        skin = state.memo("skin", inputs, lambda: Skin.of_weights(state.weights))
         actors |= {name: replace(actors[name], skin=skin) for name in bodies}
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
     if not state.open_panel.poses:

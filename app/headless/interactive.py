@@ -35,16 +35,16 @@ from cutcell_viewers.palette import COLORMAPS, THEMES, to_hex
 from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import MIXED
 
-from ..derive.memo import Memo
 from ..document.framing import bones_part, bounds_of, camera_part, first_joint, theme_part
 from ..document.state import State
+from ..editing.binding.bound import build_shown
 from ..editing.correct.joints import in_order
-from ..features.graph.scene import build_shown
-from ..features.inspector.facts import MAX_DISTANCES, MAX_WEIGHTS, components
-from ..features.pose.scene import clip_part, gizmo_part
+from ..features.inspector.facts import MAX_DISTANCES, MAX_WEIGHTS
 from ..features.scenes import following, resolve
 from ..features.state import PageState
 from ..files.table_export import settings_of
+from ..looks.components import components
+from ..looks.pose import clip_part, gizmo_part
 from ..widgets.changes import changes
 from ..widgets.modules import FOLDER, names, style
 from ..widgets.view import SceneView
@@ -130,7 +130,7 @@ def page_in_one_file(
 def _record(rig: Rig, binding: Binding, colormap: str, progress: Progress) -> dict[str, Any]:
     """Return all messages of the page: of each joint, view and clip."""
     complete = binding.distances.of_all_joints(progress)
-    state, memo = PageState(rig=rig, binding=replace(binding, distances=complete)), Memo()
+    state = PageState(rig=rig, binding=replace(binding, distances=complete))
     state.colormap = colormap
     limit = MAX_CLIP_NUMBERS // max(len(rig.clips), 1)
     clips = [(shown_name(clip.name), clip_part(state, clip, limit)) for clip in rig.clips]
@@ -141,16 +141,16 @@ def _record(rig: Rig, binding: Binding, colormap: str, progress: Progress) -> di
             "camera": camera_part(framing(bounds_of(state), 1.2)),
         },
         "themes": [theme_part(THEMES[name]) for name in ("light", "dark")],
-        "graph": _graph(state, memo, progress),
+        "graph": _graph(state, progress),
         "box": bounds_of(state).tolist(),
-        **_joints(state, memo, progress),
+        **_joints(state, progress),
         "clips": [{"name": name, "clip": part} for name, part in clips if part],
         "mark": _message(Description({"vertex": vertex_mark(rig, 0, binding.weights)})),
         **_facts(rig, binding, complete.joint),
     }
 
 
-def _graph(state: State, memo: Memo, progress: Progress) -> list[dict[str, Any]]:
+def _graph(state: State, progress: Progress) -> list[dict[str, Any]]:
     """Return the scene of the graph in a light and a dark theme."""
     state.param.update(panel="graph", skeleton=False)
     state.resolution = state.graph.lattice.resolution
@@ -162,7 +162,7 @@ def _graph(state: State, memo: Memo, progress: Progress) -> list[dict[str, Any]]
     scenes, skin = [], Skin.of_weights(state.weights)
     for dark in (False, True):
         state.dark = dark
-        scene = resolve(state, memo)
+        scene = resolve(state)
         # Cards are of vertices alone: a click goes through nodes to the body.
         actors = {name: replace(actor, reading=None) for name, actor in scene.actors.items()}
         actors["body"] = replace(actors["body"], skin=skin)
@@ -171,24 +171,24 @@ def _graph(state: State, memo: Memo, progress: Progress) -> list[dict[str, Any]]
     return scenes
 
 
-def _joints(state: State, memo: Memo, progress: Progress) -> dict[str, list[Any]]:
+def _joints(state: State, progress: Progress) -> dict[str, list[Any]]:
     """Return each joint's weights, distances and rings; the last weights are of all joints."""
     count = len(state.rig.skeleton.joints)
     weights, distances, rings = [], [], []
     for joint in range(count):
         progress("writing the page", joint / count)
         state.param.update(panel="pose", weights_shown="bone", joint=joint)
-        weights.append(_message(resolve(state, memo)))
+        weights.append(_message(resolve(state)))
         rings.append(gizmo_part(state))
         state.panel = "distance"
-        distances.append(_message(following(state, memo)))
-    return {"weights": [*weights, _mixed(state, memo)], "distance": distances, "rings": rings}
+        distances.append(_message(following(state)))
+    return {"weights": [*weights, _mixed(state)], "distance": distances, "rings": rings}
 
 
-def _mixed(state: State, memo: Memo) -> dict[str, Any]:
+def _mixed(state: State) -> dict[str, Any]:
     """Return the weights of all joints, while no joint is chosen."""
     state.param.update(panel="pose", weights_shown="mix")
-    scene, rig = resolve(state, memo), state.rig
+    scene, rig = resolve(state), state.rig
     actors = {**scene.actors, **bones(rig, colors=colors_of(rig))}
     return _message(replace(scene, actors=actors, legend=Legend(MIXED)))
 

@@ -13,7 +13,6 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.skin import Skin
 
-from ..derive.memo import Memo
 from ..document.framing import bounds_of
 from ..document.state import State
 
@@ -25,39 +24,37 @@ GRAPH_BODY_OPACITY = 0.22
 """Opacity of the body while the graph inside it is visible."""
 
 
-def character(
-    state: State, memo: Memo, *, bones_coloured: bool = False, **look: Any
-) -> dict[str, Actor]:
+def character(state: State, *, bones_coloured: bool = False, **look: Any) -> dict[str, Actor]:
     """Return the body, its attachments, the bones, and the mark of the chosen vertex.
 
     Bones may have the colours of their weights. The look consists of fields of the body's `Actor`;
     opacity and visibility apply to attachments, too.
     """
     rig = state.rig
-    plain = memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
+    plain = state.memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
     skin = None
     if state.open_panel.poses and state.weights is not None:
-        skin = memo("skin", (rig, state.weights), lambda: Skin.of_weights(state.weights))
-    hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
+        skin = state.memo("skin", (rig, state.weights), lambda: Skin.of_weights(state.weights))
+    hung = state.memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark, vertex = {}, state.vertex
     if vertex is not None and vertex < len(rig.mesh.vertices):
         weights = state.weights if skin is not None else None
         of = (rig, weights, vertex)
-        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, vertex, weights))
+        mark["vertex"] = state.memo("vertex", of, lambda: vertex_mark(rig, vertex, weights))
     visibility = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
         "body": replace(plain, skin=skin, edges=state.wireframe, **look),
         **{name: replace(actor, **visibility) for name, actor in hung.items()},
         **mark,
-        **_skeleton(state, memo, bones_coloured),
+        **_skeleton(state, bones_coloured),
     }
 
 
-def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
+def _skeleton(state: State, coloured: bool) -> dict[str, Actor]:
     if state.bare:
         return {}
     rig = state.rig
-    segments = memo("segments", (rig,), lambda: drawn_segments(rig))
+    segments = state.memo("segments", (rig,), lambda: drawn_segments(rig))
     visible_bones = _behind_cut(state, *segments) if state.open_panel.cuts else None
 
     def make() -> dict[str, Actor]:
@@ -65,7 +62,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         return bones(rig, state.joint, state.skeleton, colors, visible_bones)
 
     visible = None if visible_bones is None else visible_bones.tobytes()
-    actors = memo("bones", (rig, state.joint, state.skeleton, coloured, visible), make)
+    actors = state.memo("bones", (rig, state.joint, state.skeleton, coloured, visible), make)
     opacity = FAINT if state.faint_skeleton else 1.0
     return {name: replace(actor, opacity=opacity) for name, actor in actors.items()}
 
@@ -80,9 +77,9 @@ def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> N
     return None if is_behind.all() else is_behind
 
 
-def plain(state: State, memo: Memo) -> Description:
+def plain(state: State) -> Description:
     """Return the scene of the character alone."""
-    return Description(character(state, memo))
+    return Description(character(state))
 
 
 def cut_of(state: State) -> Cut | None:

@@ -12,7 +12,6 @@ from cutcell_viewers.description import Actor
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import path_tube
 
-from ..derive.memo import Memo
 from ..document.state import State
 
 MAX_JOINTS = 4
@@ -72,13 +71,13 @@ def _finite(length: float) -> float | None:
     return length if np.isfinite(length) else None
 
 
-def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
+def explained_paths(state: State) -> dict[str, Actor]:
     """Return the paths from the chosen vertex to the joints that are explained, as tubes."""
     explanation = explanation_of(state)
     if explanation is None:
         return {}
     inputs = explanation, state.joint
-    tubes: dict[str, Actor] = memo("explained", inputs, lambda: _tubes(state))
+    tubes: dict[str, Actor] = state.memo("explained", inputs, lambda: _tubes(state))
     return tubes
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..derive.memo import Memo
 from ..document.selection import selected
+from ..document.state import State
 
 BARS = 20
 """Bars from 0 to 1; vertices without weight are in none."""
@@ -18,7 +18,7 @@ def bar_of(weight: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.where(weight > 0, np.maximum(bar, 0), -1)
 
 
-def counts(state: Any) -> NDArray[np.intp]:
+def counts(state: State) -> NDArray[np.intp]:
     """Return how many selected vertices each bar has; of all vertices, without a selection."""
     chosen = selected(state)
     weight = state.weights[:, state.joint]
@@ -26,7 +26,7 @@ def counts(state: Any) -> NDArray[np.intp]:
     return np.bincount(bar[bar >= 0], minlength=BARS)
 
 
-def in_bars(state: Any, memo: Memo) -> NDArray[np.bool_] | None:
+def in_bars(state: State) -> NDArray[np.bool_] | None:
     """Return which vertices the chosen bars hold, shape (n,); None if no bar is chosen."""
     if not state.histogram or state.bars is None or state.weights is None:
         return None
@@ -38,11 +38,11 @@ def in_bars(state: Any, memo: Memo) -> NDArray[np.bool_] | None:
         return within if chosen is None else within & chosen
 
     inputs = state.weights, chosen, state.joint, first, last
-    vertices: NDArray[np.bool_] = memo("vertices of bars", inputs, find)
+    vertices: NDArray[np.bool_] = state.memo("vertices of bars", inputs, find)
     return vertices
 
 
-def histogram_rows(state: Any) -> dict[str, Any]:
+def histogram_rows(state: State) -> dict[str, Any]:
     """Return labels and counts of the bars, and which of them are chosen."""
     if not state.histogram or state.weights is None or state.bare:
         return {"bars": [], "chosen": []}

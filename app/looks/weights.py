@@ -18,7 +18,6 @@ from cutcell_viewers.weights_scene import (
     weight_colors,
 )
 
-from ..derive.memo import Memo
 from ..document.state import State
 from .character import BODY_OPACITY_WITH_PATH, character
 from .components import seen_apart
@@ -31,22 +30,22 @@ FILES = "In the file"
 """Beginning of the legend of the file's own weights."""
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Weights; plain where there are no weights at all."""
     state = as_dragged(state)
     weights = weights_seen(state)
     if weights is None:
-        return Description(character(state, memo))
-    style, legend, coloured = weights_look(state, memo, weights)
-    paths = explained_paths(state, memo)
+        return Description(character(state))
+    style, legend, coloured = weights_look(state, weights)
+    paths = explained_paths(state)
     if paths:
         style = {**style, "opacity": BODY_OPACITY_WITH_PATH}
-    actors = character(state, memo, bones_coloured=coloured, **style)
+    actors = character(state, bones_coloured=coloured, **style)
     if not paths:
-        actors = seen_apart(state, memo, actors)
-    actors = isolated(state, memo, actors)
-    actors |= selection_marks(state, memo, actors["body"])
-    actors |= outlined(state, memo, actors["body"], weights, weights_shown(state))
+        actors = seen_apart(state, actors)
+    actors = isolated(state, actors)
+    actors |= selection_marks(state, actors["body"])
+    actors |= outlined(state, actors["body"], weights, weights_shown(state))
     return Description({**actors, **paths}, legend=legend)
 
 
@@ -58,7 +57,7 @@ def as_dragged(state: State) -> State:
 
 
 def weights_look(
-    state: State, memo: Memo, weights: NDArray, name: str = "weights"
+    state: State, weights: NDArray, name: str = "weights"
 ) -> tuple[dict[str, Any], Legend, bool]:
     """Return the colours of a body by weights, their legend, and whether bones have them, too.
 
@@ -69,7 +68,7 @@ def weights_look(
     of_rig = rig.mesh, rig.weights, rig.skeleton.names
     how = state.weight_scale, state.weight_limit, state.asymmetry
     inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how)
-    style, legend = memo(name, inputs, lambda: coloring(state, colors, weights))
+    style, legend = state.memo(name, inputs, lambda: coloring(state, colors, weights))
     coloured = colors in ("mix", "dominant")
     if coloured:
         bone, color = short_names(rig.skeleton.names)[state.joint], colors_of(rig)[state.joint]
@@ -122,7 +121,10 @@ def weights_shown(state: State) -> str:
 
 
 def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any], Legend]:
-    """Return the fields of the body's `Actor` that colour it, and the legend."""
+    """Return the fields of the body's `Actor` that colour it, and the legend.
+
+    `state` needs no more than the choices of these colours, and may be of a few vertices.
+    """
     rig = state.rig
     if colors == "difference":
         return difference_colors(rig, state.weights, rig.weights)

@@ -1,12 +1,11 @@
 """Choose a bone."""
 
-from typing import Any
-
 import panel_material_ui as pmui
 
 from cutcell_viewers.short_names import short_names
 
 from ..document.session import Session
+from ..document.state import State
 from ..widgets import controls as ui
 
 TOGGLES = (
@@ -17,7 +16,7 @@ TOGGLES = (
 """Switches beside the bone: choice, icons off and on, and help."""
 
 
-def _names(state: Any) -> list[str]:
+def _names(state: State) -> list[str]:
     return [] if state.rig is None else short_names(state.rig.skeleton.names)
 
 

@@ -96,7 +96,7 @@ def _described(state: State) -> str:
         moved = any(one.position is not None for one in edits.joints.values())
         changed = ["weights"]
         changed += ["skeleton"] if moved or edits.structural else []
-        changed += ["mesh"] if rig.mesh is not state.own.mesh else []
+        changed += ["mesh"] if rig is not None and rig.mesh is not state.own.mesh else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
@@ -110,7 +110,7 @@ def _offering(act: Callable[..., None], *arguments: Any) -> Callable[[Session], 
     return lambda session: act(session, *arguments, session.view.offer)
 
 
-def _is_empty(state: Any) -> bool:
+def _is_empty(state: State) -> bool:
     return state.rig is None
 
 
@@ -143,7 +143,7 @@ BASE = ui.section(
         "",
         "Base, below all layers",
         options=WHOSE,
-        value=correct.uses_file,
+        value=lambda state: state.edits.base == "file",
         act=correct.choose_file,
         visible=lambda state: ui.has_weights(state) and not state.bare,
         disabled=lambda state: state.graph is None,

@@ -5,8 +5,9 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..document.session import Session
+from ..document.state import State
 from ..editing.correct.template_controls import SKELETON
-from ..features.builders import BUILDERS
+from ..features import FEATURES
 from ..features.state import PANELS
 from ..widgets import controls as ui
 from ..widgets.tabs import Tabs
@@ -20,7 +21,7 @@ NO_SKELETON = (
 )
 
 
-def _is_alone(state: Any) -> bool:
+def _is_alone(state: State) -> bool:
     """Return whether one character is shown, and not two that are compared."""
     return state.panel != "pairs" or state.opened is None
 
@@ -50,7 +51,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
 
     def update(*events: Any) -> None:
         if state.panel not in built and state.is_panel_usable:
-            built[state.panel] = BUILDERS[state.panel](session)
+            built[state.panel] = ui.draw(session, FEATURES[state.panel].controls, state.panel)
             place.append(built[state.panel])
         for panel, controls in built.items():
             controls.visible = panel == state.panel and state.is_panel_usable

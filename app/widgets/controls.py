@@ -9,6 +9,7 @@ from cutcell.method import OPTIONS
 from cutcell.options import Flag, Whole
 
 from ..document.session import Session
+from ..document.state import State
 from .table import Control, draw
 from .text import as_text, joint_title, unique_names
 
@@ -108,7 +109,7 @@ def pick(
     of the one that a person chooses.
     """
 
-    def shows(state: Any) -> dict[str, Any]:
+    def shows(state: State) -> dict[str, Any]:
         titles = unique_names(names(state))
         return {"options": titles, "value": titles[index(state)] if titles else None}
 
@@ -205,16 +206,16 @@ def folded(
     return column(accordion, **{"margin": (2, 20), **options})
 
 
-def has_weights(state: Any) -> bool:
+def has_weights(state: State) -> bool:
     """Return whether the open character has weights in its file."""
     return state.rig is not None and state.rig.weights is not None
 
 
-def has_joint(state: Any) -> bool:
+def has_joint(state: State) -> bool:
     """Return whether the chosen joint is one of the open character's."""
     return state.rig is not None and state.joint < len(state.rig.skeleton.names)
 
 
-def weightless(state: Any) -> bool:
+def weightless(state: State) -> bool:
     """Return whether the chosen joint carries no weight."""
     return has_joint(state) and not state.rig.skeleton.deform[state.joint]

@@ -10,6 +10,7 @@ from typing import Any
 from panel.viewable import Viewable
 
 from ..document.session import Session
+from ..document.state import State
 from .follow import Follower, Followers
 
 
@@ -63,14 +64,14 @@ class Control:
         self._moving = {name: value for name, value in options.items() if callable(value)}
         self._name, self._declared, self._shows = name, declared, shows
 
-    def declared(self, state: Any) -> dict[str, Any]:
+    def declared(self, state: State) -> dict[str, Any]:
         """Return the options that the declaration of the parameter gives."""
         if not self._name:
             return {}
         parameter = state.param[self._name]
         return {"label": parameter.label, **self._declared(parameter)}
 
-    def shown(self, state: Any) -> dict[str, Any]:
+    def shown(self, state: State) -> dict[str, Any]:
         """Return the options that follow the state."""
         moving = {name: value(state) for name, value in self._moving.items()}
         return {**moving, **self._shows(state)}

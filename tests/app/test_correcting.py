@@ -42,7 +42,6 @@ from cutcell_app.features.scenes import resolve
 from cutcell_app.files.edits_file import MAX_IN_ADDRESS, from_text, to_text
 from cutcell_app.shell.export_controls import BASE, changes_of, loss
 from cutcell_app.shell.session import keys
-from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree
 from cutcell_app.widgets.rows import Rows
@@ -161,13 +160,13 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
     rigid = Layer(Filled({"elbow": 1}), PART)
     correct.correct(bound, Edits(layers=[rigid, Layer(Locked(["wrist"]))]))
     settled(bound, loop)
-    reports = [door.text for door in warnings(bound.state) if "vertex 3 " in door.text]
+    reports = [link.text for link in bound.state.warnings if "vertex 3 " in link.text]
     assert len(reports) == 1
     assert "elbow" in reports[0]
     assert "wrist" in reports[0]
     correct.correct(bound, Edits(layers=[rigid]))
     settled(bound, loop)
-    assert not any("vertex 3 " in door.text for door in warnings(bound.state))
+    assert not any("vertex 3 " in link.text for link in bound.state.warnings)
 
 
 def test_all_parts_start_from_the_files_weights(bound, loop):
@@ -412,11 +411,11 @@ def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
     assert np.array_equal(bound.state.binding.weights[together], [[0.25, 0, 0.75]] * len(together))
     look.pick_vertex(bound, 7)
     bound.state.explain = True
-    facts = vertex_facts(bound.state, bound.memo)
+    facts = vertex_facts(bound.state)
     assert facts["overruled"]
     assert [bone["weight"] for bone in facts["offered"]][:3] == [0.75, 0.25, 0]
     settled(bound, loop)
-    reports = vertex_facts(bound.state, bound.memo)["why"]
+    reports = vertex_facts(bound.state)["why"]
     assert reports[0]["steps"][-1] == ["Painted", 0.75]
     correct.overrule(bound, 7, {0: 0.0})
     assert "needs a weight above 0" in bound.state.message[1]

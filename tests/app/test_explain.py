@@ -18,7 +18,7 @@ def explained(bound, loop):
 
 def test_the_steps_end_with_the_weights_that_are_shown(explained):
     state = explained.state
-    reports = vertex_facts(state, explained.memo)["why"]
+    reports = vertex_facts(state)["why"]
     weights = {bone["joint"]: bone["steps"][-1][1] for bone in reports}
     assert weights == pytest.approx({j: state.binding.weights[7, j] for j in weights})
     assert sum(weights.values()) == pytest.approx(1)
@@ -32,7 +32,7 @@ def test_the_steps_end_with_the_weights_that_are_shown(explained):
 def test_its_paths_are_drawn_in_the_joints_colours(explained):
     drawn = [name for name in resolve(explained.state).actors if name.startswith("path to ")]
     assert drawn
-    reports = vertex_facts(explained.state, explained.memo)["why"]
+    reports = vertex_facts(explained.state)["why"]
     assert {f"path to {bone['joint']}" for bone in reports if bone["steps"][-1][1]} == {*drawn}
     explained.state.explain = False
     assert not [name for name in resolve(explained.state).actors if name.startswith("path to ")]
@@ -42,14 +42,14 @@ def test_other_weights_are_explained_anew(explained, loop):
     explained.state.max_influences = 1
     assert explained.state.explanation is None
     loop.run_until(lambda: explained.state.explanation is not None)
-    reports = vertex_facts(explained.state, explained.memo)["why"]
+    reports = vertex_facts(explained.state)["why"]
     assert [bone["steps"][-1][1] for bone in reports] == [1.0] + [0.0] * (len(reports) - 1)
 
 
 def test_nothing_is_explained_unless_it_is_asked_for(bound):
     pick_vertex(bound, 7)
     assert ("explanation",) not in bound.state.computing
-    assert vertex_facts(bound.state, bound.memo)["why"] == []
+    assert vertex_facts(bound.state)["why"] == []
 
 
 def test_the_chosen_joint_says_why_it_has_no_weight(explained, loop):
@@ -60,7 +60,7 @@ def test_the_chosen_joint_says_why_it_has_no_weight(explained, loop):
     state.joint = absent
     assert state.explanation is before, "the older one stays until the new one is there"
     loop.run_until(lambda: state.explanation is not before)
-    (bone,) = [one for one in vertex_facts(state, explained.memo)["why"] if one["chosen"]]
+    (bone,) = [one for one in vertex_facts(state)["why"] if one["chosen"]]
     assert bone["joint"] == absent
     assert bone["absence"].endswith(".")
     assert (f"path to {absent}" in resolve(state).actors) == bool(bone["path"])

@@ -10,7 +10,6 @@ import pytest
 import cutcell
 from cutcell.graph.winding import winding_number as cutcell_winding
 from cutcell.rig import TriangleMesh
-from cutcell_app.derive.memo import Memo
 from cutcell_app.features.compare.results import Compared
 from cutcell_app.features.inspector.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.features.state import PageState
@@ -19,7 +18,7 @@ from cutcell_app.looks.methods import title_of
 
 
 def facts(rig, binding, vertex):
-    return vertex_facts(PageState(rig=rig, binding=binding, vertex=vertex), Memo())
+    return vertex_facts(PageState(rig=rig, binding=binding, vertex=vertex))
 
 
 def test_without_a_vertex_there_is_nothing_to_tell(rig, binding):
@@ -53,7 +52,7 @@ def test_the_card_lists_the_distance_of_the_chosen_bone(monkeypatch, rig, bindin
     monkeypatch.setattr("cutcell_app.features.inspector.facts.MAX_DISTANCES", 1)
     for joint in range(3):
         state = PageState(rig=rig, binding=binding, vertex=7, joint=joint)
-        listed = [one["joint"] for one in vertex_facts(state, Memo())["distances"]]
+        listed = [one["joint"] for one in vertex_facts(state)["distances"]]
         assert joint in listed
         assert len(listed) <= 2
 
@@ -85,10 +84,10 @@ def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
 def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
     graph = binding.graph
     state = PageState(rig=rig, binding=binding, panel="graph", graph_resolution=0)
-    assert node_facts(state, Memo()) is None
+    assert node_facts(state) is None
     for kind, name in enumerate(("mesh", "interior", "surface")):
         state.node = node = int(np.flatnonzero((graph.node_kind == kind) & graph.connected)[0])
-        result = node_facts(state, Memo())
+        result = node_facts(state)
         assert (result["node"], result["kind"]) == (node, name)
         place = graph.lattice.to_file(graph.nodes[[node]])
         np.testing.assert_allclose([result["position"]], place)
@@ -103,7 +102,7 @@ def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
         else:
             assert result["triangle"] is None
     state.panel = "weights"
-    assert node_facts(state, Memo()) is None
+    assert node_facts(state) is None
 
 
 def test_a_graph_leaves_as_numbers(binding, tmp_path):
@@ -136,25 +135,25 @@ def test_beside_other_methods_the_card_shows_the_clicked_ones_weights(rig, bindi
     )
     state.compared = {"euclidean": Compared(other)}
     state.clicked_method = "euclidean"
-    result = vertex_facts(state, Memo())
+    result = vertex_facts(state)
     assert result["method"] == title_of("euclidean")
     assert {bone["joint"]: bone["ours"] for bone in result["weights"]}[2] == 1
     assert not {"distances", "why", "reached"} & set(result), "these are of the page's own binding"
     state.clicked_method = "artist"
-    result = vertex_facts(state, Memo())
+    result = vertex_facts(state)
     assert result["method"] == "From file"
     shown = {bone["joint"]: bone["ours"] for bone in result["weights"]}
     assert shown == {j: rig.weights[7, j] for j in shown}
     state.clicked_method = "now"
-    result = vertex_facts(state, Memo())
+    result = vertex_facts(state)
     assert result["method"] == title_of("now")
     assert result["distances"]
     state.methods = ["now", "voxel"]
     state.clicked_method = "voxel"
-    assert vertex_facts(state, Memo()) == {
+    assert vertex_facts(state) == {
         "vertex": 7,
         "computed": False,
         "method": title_of("voxel"),
     }
     state.panel = "weights"
-    assert "method" not in vertex_facts(state, Memo())
+    assert "method" not in vertex_facts(state)

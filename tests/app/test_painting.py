@@ -12,8 +12,9 @@ from cutcell_app.editing.brush import controls as brush_controls
 from cutcell_app.editing.brush import strokes as brush
 from cutcell_app.editing.brush.choices import MIN_RADIUS, MIN_STRENGTH
 from cutcell_app.editing.brush.strokes import radius_of
-from cutcell_app.editing.compute import Brush, paint_weights
+from cutcell_app.editing.compute.brush import paint_weights
 from cutcell_app.editing.compute.stack import painted_vertices
+from cutcell_app.editing.compute.stroke import Brush
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.layers.commands import STEPS, in_steps
 from cutcell_app.editing.select.controls import SELECTION
@@ -107,14 +108,14 @@ def test_strokes_that_follow_at_once_are_steps_of_their_own(painter, loop):
 
 def test_colours_follow_each_piece_and_are_those_of_the_scene_after(painter, loop):
     state = painter.state
-    first = resolve(state, painter.memo).actors["body"].scalars
+    first = resolve(state).actors["body"].scalars
     stroke(painter, MIDDLE, MIDDLE + 1, MIDDLE + 2)
     pieces = [answer["painted"] for answer in painter.answers]
     assert len(pieces) == 3
     sizes = [len(one["vertices"]) for one in pieces]
     assert 0 < sizes[0] <= sizes[1] <= sizes[2]
     settled(painter, loop)
-    last = resolve(state, painter.memo).actors["body"].scalars
+    last = resolve(state).actors["body"].scalars
     seen = first.copy()
     seen[pieces[-1]["vertices"]] = pieces[-1]["scalars"]
     np.testing.assert_allclose(seen, last, rtol=0, atol=1 / STEPS)
@@ -127,7 +128,7 @@ def test_colours_of_a_few_vertices_are_those_of_the_whole(painter, shown):
     state.weights_shown = shown
     some = np.array([3, 20, 41])
     colors = painted_colors(state, some, state.weights[some])
-    body = resolve(state, painter.memo).actors["body"]
+    body = resolve(state).actors["body"]
     ((name, few),) = colors.items()
     assert np.array_equal(few, getattr(body, name)[some])
     state.weights_of = "file"
@@ -329,7 +330,7 @@ def test_strokes_stay_on_what_is_selected(painter, loop):
     assert 1 < chosen.sum() < len(chosen)
     assert chosen[MIDDLE]
     assert not state.edits
-    assert len(resolve(state, painter.memo).actors["selection"].points) == chosen.sum()
+    assert len(resolve(state).actors["selection"].points) == chosen.sum()
     state.param.update(brush_mode="add", brush_radius=0.4)
     before = state.binding.weights
     stroke(painter, MIDDLE)
@@ -342,7 +343,7 @@ def test_strokes_stay_on_what_is_selected(painter, loop):
     assert np.array_equal(selected(state), ~chosen)
     brush.clear_selection(painter)
     assert selected(state) is None
-    assert "selection" not in resolve(state, painter.memo).actors
+    assert "selection" not in resolve(state).actors
 
 
 def test_ctrl_takes_away_from_the_selection_and_a_cancelled_stroke_leaves_it(painter, loop):

@@ -197,10 +197,10 @@ def test_a_change_during_a_description_is_shown_and_no_other_is_described_again(
     loop.rest(session)
     gate, described = threading.Event(), []
 
-    def slow(state, *memo):
+    def slow(state):
         gate.wait(60)
         described.append(state.joint)
-        return resolve(state, *memo)
+        return resolve(state)
 
     monkeypatch.setattr(view_parts, "resolve", slow)
     session.state.joint = 0
@@ -219,7 +219,7 @@ def test_a_scene_that_fails_is_reported_once_and_tried_again_after_a_change(
     loop.rest(session)
     calls = []
 
-    def fail(state, *memo):
+    def fail(state):
         calls.append(state.joint)
         raise CutcellError("no such scene")
 

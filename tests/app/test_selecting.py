@@ -41,7 +41,7 @@ def hear(session, kind, **message):
     session.view._handle_msg({"type": kind, **message})
 
 
-def test_a_lasso_selects_adds_and_subtracts(bound):
+def test_a_lasso_selects_adds_and_subtracts(bound, loop):
     state = bound.state
     keys.act(bound, "lasso")
     assert state.lasso
@@ -61,6 +61,7 @@ def test_a_lasso_selects_adds_and_subtracts(bound):
     state.lasso = True
     assert not state.brush
     state.panel = "graph"
+    loop.rest(bound)
     assert bound.view.last_sent("lasso") is None
     hear(bound, "lasso", vertices=[2], mode="replace")
     assert selected(state) is None
@@ -83,17 +84,17 @@ def test_keys_grow_shrink_and_isolate_the_selection(bound):
     assert 1 < sizes[0] <= sizes[2] < sizes[1]
     assert sizes[3] < sizes[2]
     keys.act(bound, "grow")
-    whole = resolve(state, bound.memo).actors
+    whole = resolve(state).actors
     keys.act(bound, "isolate")
-    actors = resolve(state, bound.memo).actors
+    actors = resolve(state).actors
     cells = actors["body"].cells
     assert 0 < len(cells) < len(whole["body"].cells)
     assert selected(state)[cells].any(axis=1).all()
     assert not any(name.startswith("attachment") for name in actors)
     state.panel = "pose"
-    assert len(resolve(state, bound.memo).actors["body"].cells) == len(cells)
+    assert len(resolve(state).actors["body"].cells) == len(cells)
     keys.act(bound, "isolate")
-    assert len(resolve(state, bound.memo).actors["body"].cells) == len(whole["body"].cells)
+    assert len(resolve(state).actors["body"].cells) == len(whole["body"].cells)
     state.panel = "graph"
     keys.act(bound, "select all")
     assert not selected(state).all(), "keys do nothing where no weights are in sight"
@@ -424,7 +425,7 @@ def test_bars_of_the_histogram_hold_the_vertices_of_their_weights(bound, loop):
         assert count == ((weight > above + 1e-9) & (weight <= up_to + 1e-9)).sum()
     histogram._handle_msg({"type": "pick-bars", "first": 0, "last": 9})
     within = (weight > 0) & (weight <= 0.5 + 1e-9)
-    assert len(resolve(state, bound.memo).actors["selection"].points) == within.sum()
+    assert len(resolve(state).actors["selection"].points) == within.sum()
     selections.select_bars(bound)
     assert np.array_equal(selected(state), within)
     assert state.bars is None
@@ -439,18 +440,18 @@ def test_faint_weights_are_seen_by_other_scales_and_the_outline(bound):
     state = bound.state
     state.param.update(joint=1, weights_shown="bone")
     weight = state.weights[:, 1]
-    actors = resolve(state, bound.memo).actors
+    actors = resolve(state).actors
     assert np.array_equal(actors["body"].scalars, weight.astype(np.float32))
     assert len(actors["weight outline"].points)
     state.weight_outline = False
-    assert "weight outline" not in resolve(state, bound.memo).actors
+    assert "weight outline" not in resolve(state).actors
     state.weight_scale = "log"
-    body = resolve(state, bound.memo).actors["body"]
+    body = resolve(state).actors["body"]
     expected = np.clip(1 + np.log10(np.maximum(weight, 1e-9)) / 3, 0, 1)
     np.testing.assert_allclose(body.scalars, expected, atol=1e-6)
     np.testing.assert_allclose(body.reading.values, weight, atol=1e-6)
     state.param.update(weight_scale="limit", weight_limit=0.3)
-    scene = resolve(state, bound.memo)
+    scene = resolve(state)
     assert np.array_equal(scene.actors["body"].scalars > 0, weight.astype(np.float32) > 0.3)
     assert "above 0.3" in scene.legend.title
     section = draw(bound, WEIGHT_SCALE)

@@ -16,6 +16,7 @@ from cutcell_app.document import loading, look
 from cutcell_app.editing.binding import recovery as binding
 from cutcell_app.editing.binding import results
 from cutcell_app.features import scenes
+from cutcell_app.features.state import PANELS
 from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.begin import begin
 from cutcell_app.shell.status import stage_text, summary, warning
@@ -326,10 +327,10 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
     threads, described = [], []
     resolve = scenes.resolve
 
-    def noted(state, memo):
+    def noted(state):
         if state.rig is not None:
             threads.append(threading.current_thread())
-        return resolve(state, memo)
+        return resolve(state)
 
     monkeypatch.setattr("cutcell_app.shell.session.view_parts.resolve", noted)
     monkeypatch.setattr(session.view, "present", lambda scene, **parts: described.append(scene))
@@ -437,7 +438,7 @@ def test_meshes_of_the_server_are_shown_with_every_character(bound):
     points, cells = np.zeros((1, 3), np.float32), np.zeros((1, 1), np.int32)
     sensor = Actor("points", points, cells)
     bound.state.actors = {"sensor": sensor}
-    for panel in scenes.SCENES:
+    for panel in PANELS:
         if panel != "pairs":
             bound.state.panel = panel
-            assert scenes.resolve(bound.state, bound.memo).actors["sensor"] is sensor
+            assert scenes.resolve(bound.state).actors["sensor"] is sensor

@@ -1,7 +1,6 @@
 """The brush: what it does to weights, how large and how strong it is."""
 
-from typing import Any
-
+from ...document.state import State
 from ...widgets import controls as ui
 from ..correct.moving import mirror_of
 
@@ -15,7 +14,7 @@ HOW = (
 )
 
 
-def _summary(state: Any) -> str:
+def _summary(state: State) -> str:
     if state.brush_mode in SUMMARIES:
         return SUMMARIES[state.brush_mode]
     if not ui.has_joint(state):
@@ -23,7 +22,7 @@ def _summary(state: Any) -> str:
     return f"Paints weights of {ui.joint_title(state.rig, state.joint)}, the selected bone."
 
 
-def _has_mirror(state: Any) -> bool:
+def _has_mirror(state: State) -> bool:
     return state.rig is not None and state.own is not None and mirror_of(state) is not None
 
 

@@ -13,8 +13,8 @@ from ...document.selection import Selection, selected
 from ...document.session import Session
 from ...document.state import State
 from ...looks.weights import painted_colors
-from ...messages import sent
-from ...messages.received import Paint
+from ...server.protocol import sent
+from ...server.protocol.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
@@ -31,13 +31,13 @@ STRONGER = 0.1
 def watch(session: Session) -> None:
     """Connect the brush of the view to the weights."""
     follow = session.state.param.watch
-    hand = Hand(session)
-    session.view.listen(Paint, hand.paint)
-    follow(lambda *events: take_up(session), "brush")
-    follow(lambda event: put_down(session) if event.new else None, "joint_handle")
+    controller = BrushController(session)
+    session.view.listen(Paint, controller.paint)
+    follow(lambda *events: activate(session), "brush")
+    follow(lambda event: deactivate(session) if event.new else None, "joint_handle")
 
 
-def take_up(session: Session) -> None:
+def activate(session: Session) -> None:
     """Show the weights that are about to be painted, and nothing else that can be dragged."""
     state = session.state
     if not state.brush:
@@ -55,16 +55,16 @@ def take_up(session: Session) -> None:
 
 
 def _surface(session: Session, mesh: TriangleMesh) -> PaintSurface:
-    surface: PaintSurface = session.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
+    surface: PaintSurface = session.state.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
     return surface
 
 
-def put_down(session: Session) -> None:
+def deactivate(session: Session) -> None:
     """Paint no more."""
     session.state.brush = False
 
 
-def turn_over(session: Session) -> None:
+def toggle(session: Session) -> None:
     """Switch the brush on where weights can be painted, else off."""
     state = session.state
     if not state.open_panel.paints:
@@ -128,7 +128,7 @@ def invert_selection(session: Session) -> None:
         select(session, ~chosen)
 
 
-class Hand:
+class BrushController:
     """Paints as the pointer passes over the body.
 
     Parameters
@@ -153,7 +153,7 @@ class Hand:
             self._stroke = None
             session.view.answer(painted={"gone": True})
             return
-        points = np.asarray(message.points or ()).reshape(-1, 6)
+        points = np.asarray(message.points).reshape(-1, 6)
         corners = points[:, :3].astype(np.intp)
         if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
             stroke.pass_over(corners, points[:, 3:])
@@ -205,7 +205,7 @@ class Hand:
         self._of = state.binding
 
     def _select(self, stroke: Stroke, message: Paint) -> None:
-        """Add what the stroke touched to the selection as it was before it, or take it away."""
+        """Add the touched vertices to the selection from before the stroke, or subtract them."""
         session, before = self._session, self._selected
         count = len(session.state.rig.mesh.vertices)
         chosen = np.zeros(count, np.bool_) if before is None else before.copy()

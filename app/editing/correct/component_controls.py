@@ -7,6 +7,7 @@ from cutcell.runtime.display import shown_name
 from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
+from ...document.state import State
 from ...looks.components import chosen, vertices_of
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
@@ -25,37 +26,37 @@ CONTENTS = {"attached": Attached(), "computed": Computed(as_skin=True), "file": 
 LATE = ("binding",)
 
 
-def _parts(state: Any) -> list[Component]:
+def _parts(state: State) -> list[Component]:
     """Return the connected components."""
     inputs = (state.rig, state.binding, state.edits)
-    parts: list[Component] = state.memo("parts", inputs, lambda: listed(state, state.memo))
+    parts: list[Component] = state.memo("parts", inputs, lambda: listed(state))
     return parts
 
 
-def _chosen(state: Any) -> Component | None:
+def _chosen(state: State) -> Component | None:
     """Return the component that is looked at."""
-    number, parts = chosen(state, state.memo), _parts(state)
+    number, parts = chosen(state), _parts(state)
     return parts[number] if 0 <= number < len(parts) else None
 
 
-def _how(state: Any) -> str:
+def _how(state: State) -> str:
     """Return how the chosen component is bound; empty where it has no layer."""
     one = _chosen(state)
     return "" if one is None or one.layer is None else one.layer.content.kind
 
 
-def _about(state: Any) -> str:
+def _about(state: State) -> str:
     count = len(_parts(state))
     more = " The largest are listed." if count == MOST else ""
     return f"{count} separate parts. Click to isolate one, again to show all.{more}"
 
 
-def _list(state: Any) -> dict[str, Any]:
+def _list(state: State) -> dict[str, Any]:
     """Return the rows of the components, and the number of the chosen one."""
     parts = _parts(state)
     names = state.rig.skeleton.names if parts else ()
     rows = [(_title(one), _follows(one, names), one.vertices / parts[0].vertices) for one in parts]
-    return {"rows": rows, "chosen": chosen(state, state.memo)}
+    return {"rows": rows, "chosen": chosen(state)}
 
 
 def _title(one: Component) -> str:
@@ -75,11 +76,11 @@ def _follows(one: Component, names: tuple[str, ...]) -> str:
 def _look(session: Session, number: int) -> None:
     """Look at a component; at the same one again, at all."""
     state = session.state
-    same = chosen(state, session.memo) == number
-    state.part = None if same else listed(state, session.memo)[number].first
+    same = chosen(state) == number
+    state.part = None if same else listed(state)[number].first
 
 
-def _ways(state: Any) -> dict[str, Any]:
+def _ways(state: State) -> dict[str, Any]:
     """Return how the component that is looked at can be bound, and how it is."""
     one, how = _chosen(state), _how(state)
     is_body = one is None or not one.number  # the largest one
@@ -95,11 +96,11 @@ def _bind(session: Session, how: Any, joint: int | None = None) -> None:
         return
     name = state.rig.skeleton.names[one.joint if joint is None else joint]
     content = Filled({name: 1.0}) if how == "filled" else CONTENTS.get(how)
-    vertices = vertices_of(state, session.memo, one.first)
+    vertices = vertices_of(state, one.first)
     correct.correct_part(session, set(vertices.tolist()), content)
 
 
-def _rigid_to(state: Any) -> int:
+def _rigid_to(state: State) -> int:
     """Return the joint that the component that is looked at is rigid to."""
     one: Any = _chosen(state)
     weights = one.layer.content.weights

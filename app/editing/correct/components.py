@@ -9,7 +9,6 @@ from scipy.sparse import coo_array
 from cutcell.editing import Layer
 from cutcell.runtime.display import shown_name
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...looks.components import components_of
 from ..compute.stack import part_layers
@@ -49,15 +48,17 @@ class Component:
     layer: Layer | None
 
 
-def listed(state: State, memo: Memo) -> list[Component]:
+def listed(state: State) -> list[Component]:
     """Return the components, the largest first; none until the character is bound."""
     if state.binding is None:
         return []
-    which, sizes = components_of(state, memo)
-    firsts = memo("first vertices", (which,), lambda: np.unique(which, return_index=True)[1])
+    which, sizes = components_of(state)
+    firsts = state.memo("first vertices", (which,), lambda: np.unique(which, return_index=True)[1])
     layers = {int(which[v]): layer for v, layer in part_layers(state.edits).items()}
     weights = state.binding.weights
-    mean_weights = memo("of parts", (which, weights), lambda: _mean(which, weights, len(sizes)))
+    mean_weights = state.memo(
+        "of parts", (which, weights), lambda: _mean(which, weights, len(sizes))
+    )
     names = {} if len(state.rig.parts) < 2 else state.rig.parts
     starts = [part.vertices.start for part in names]
     return [

@@ -7,6 +7,7 @@ import panel_material_ui as pmui
 from cutcell.runtime.display import count
 
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from . import commands as correct
 
@@ -14,7 +15,7 @@ MAX_FILE = 4 * 2**20
 NONE = "No edits yet. They are included in the export and can be saved as JSON."
 
 
-def summary(state: Any) -> str:
+def summary(state: State) -> str:
     """Say how much is edited."""
     edits = state.edits
     numbers = [(len(edits.joints), "joint"), (len(edits.layers), "layer")]

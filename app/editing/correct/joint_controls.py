@@ -32,16 +32,16 @@ def _tree(session: Session) -> JointTree:
     def guessed(of: Any, guess: DeformJoints) -> None:
         if of == _character(session.state):  # otherwise another one was opened meanwhile
             cache["guess"] = guess
-            tree.rows = joint_rows(session.state, session.memo, guess)
+            tree.rows = joint_rows(session.state, guess)
 
-    def shows(state: Any) -> dict[str, Any]:
+    def shows(state: State) -> dict[str, Any]:
         if state.rig is None or state.bare:
             return {}
         of = _character(state)
         if cache["of"] != of:
             cache.update(of=of, guess=None)
             correct.guess(session, partial(guessed, of))
-        rows = joint_rows(state, state.memo, cache["guess"])
+        rows = joint_rows(state, cache["guess"])
         return {"rows": rows, "chosen": state.joint}
 
     row = ui.Control(
@@ -71,11 +71,11 @@ def _detect(session: Session) -> None:
 
 
 def _character(state: State) -> Any:
-    """Return what stays the same while a character's weights are edited."""
+    """Return a key of the character that edits of weights do not change."""
     return state.rig and (state.rig.mesh, state.rig.skeleton.names)
 
 
-def _edit(state: Any) -> JointEdit:
+def _edit(state: State) -> JointEdit:
     """Return the edit of the chosen joint."""
     if not ui.has_joint(state):
         return JointEdit()
@@ -84,13 +84,13 @@ def _edit(state: Any) -> JointEdit:
 
 
 def _corrects(name: str, read: Any = lambda value: value) -> Any:
-    """Return what corrects the chosen joint by the value of a control."""
+    """Return an action that sets an edit of the chosen joint."""
     return lambda session, value: correct.correct_joint(
         session, session.state.joint, **{name: read(value)}
     )
 
 
-def _is_as_computed(state: Any) -> bool:
+def _is_as_computed(state: State) -> bool:
     """Return whether all that is edited of the chosen joint is the skeleton's structure."""
     one = _edit(state)
     position = one.position if one.added else None
@@ -99,11 +99,11 @@ def _is_as_computed(state: Any) -> bool:
     return not _is_locked(state) and (_gain(state), _radius(state)) == (1.0, "")
 
 
-def _is_locked(state: Any) -> bool:
+def _is_locked(state: State) -> bool:
     return _name(state) in locked_names(state.edits)
 
 
-def _gain(state: Any) -> float:
+def _gain(state: State) -> float:
     return float(state.edits.reach.gain.get(_name(state), 1.0))
 
 
@@ -113,7 +113,7 @@ def _reset(session: Session) -> None:
     correct.correct_joint(session, session.state.joint, **AS_COMPUTED, **position)
 
 
-def _name(state: Any) -> str:
+def _name(state: State) -> str:
     return state.rig.skeleton.names[state.joint] if ui.has_joint(state) else ""
 
 
@@ -124,7 +124,7 @@ def _rename(session: Session, name: str) -> None:
         correct.rename(session, session.state.joint, name)
 
 
-def _is_from_file(state: Any) -> bool:
+def _is_from_file(state: State) -> bool:
     """Return whether the reach of joints changes nothing: the base is the file's weights."""
     return bool(state.edits.base == "file")
 
@@ -141,16 +141,16 @@ def _read_number(text: str) -> Any:
         return text
 
 
-def _radius(state: Any) -> str:
+def _radius(state: State) -> str:
     radius = state.edits.reach.radius.get(_name(state))
     return "" if radius is None else f"{radius:g}"
 
 
-def _weight_text(state: Any) -> str:
+def _weight_text(state: State) -> str:
     """Say how much of the skin the chosen joint holds."""
     if not ui.has_joint(state):
         return ""
-    computed, original = shares_of(state, state.memo)
+    computed, original = shares_of(state)
     lines = []
     if computed is not None:
         lines.append(f"Moves {_percent(computed[state.joint])} of the skin")
@@ -164,7 +164,7 @@ def _percent(part: float) -> str:
     return f"{100 * part:.2g} %" if 0 < part < 0.0995 else f"{part:.0%}".replace("%", " %")
 
 
-def _counted(state: Any) -> str:
+def _counted(state: State) -> str:
     if state.rig is None:
         return ""
     chosen = state.rig.skeleton.deform

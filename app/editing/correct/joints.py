@@ -13,7 +13,6 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
 from cutcell_viewers.short_names import short_names
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ..compute.stack import locked_names
 
@@ -21,22 +20,24 @@ STRAY = 0.002
 """Share of the skin: a joint that holds more in the file is no control, whatever its name."""
 
 
-def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]:
+def shares_of(state: State) -> tuple[NDArray | None, NDArray | None]:
     """Return which part of the skin each joint holds, shape (j,): as computed, and in the file."""
     rig, binding = state.rig, state.binding
-    count = memo("vertex shares", (rig.mesh,), lambda: vertex_shares(rig.mesh))
-    shares = memo(
+    count = state.memo("vertex shares", (rig.mesh,), lambda: vertex_shares(rig.mesh))
+    shares = state.memo(
         "file's shares",
         (rig.mesh, rig.weights),
         lambda: None if rig.weights is None else count @ rig.weights,
     )
     if binding is None:
         return None, shares
-    return memo("shares", (rig.mesh, binding.weights), lambda: count @ binding.weights), shares
+    return state.memo(
+        "shares", (rig.mesh, binding.weights), lambda: count @ binding.weights
+    ), shares
 
 
-def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dict[str, Any]]:
-    """Return what the tree shows of each joint, parents before their children.
+def joint_rows(state: State, guess: DeformJoints | None) -> list[dict[str, Any]]:
+    """Return the rows of the tree, parents before their children.
 
     These are "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
     bones, or nothing, rather than skin), "doubtful" (whether it may be one, in a file without
@@ -46,9 +47,9 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     """
     rig = state.rig
     skeleton = rig.skeleton
-    colors = memo("colors", (rig,), lambda: colors_of(rig))
-    computed, original = shares_of(state, memo)
-    shorts = memo("short names", (skeleton,), lambda: short_names(skeleton.names))
+    colors = state.memo("colors", (rig,), lambda: colors_of(rig))
+    computed, original = shares_of(state)
+    shorts = state.memo("short names", (skeleton,), lambda: short_names(skeleton.names))
     rows, locked = [], set(locked_names(state.edits))
     for joint in in_order(skeleton):
         name = skeleton.names[joint]

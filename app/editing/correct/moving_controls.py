@@ -36,7 +36,7 @@ def _moved(state: State) -> Any:
 def _coordinate(axis: int) -> Any:
     """Return the field of one of the chosen joint's coordinates."""
 
-    def value(state: Any) -> str:
+    def value(state: State) -> str:
         rig = state.rig if state.dragged is None else state.dragged.rig
         if rig is None or state.joint >= len(rig.skeleton.names):
             return ""
@@ -58,11 +58,11 @@ def _coordinate(axis: int) -> Any:
     return ui.text_box("XYZ"[axis], act=put, value=value, margin=margin, sx=NARROW)
 
 
-def _has_partner(state: Any) -> bool:
+def _has_partner(state: State) -> bool:
     return ui.has_joint(state) and moving.partner_of(state) is not None
 
 
-def _is_in_place(state: Any) -> bool:
+def _is_in_place(state: State) -> bool:
     return not ui.has_joint(state) or _moved(state) is None
 
 

@@ -21,7 +21,7 @@ def _inputs(state: State) -> tuple[Any, ...] | None:
     return state.binding, *state.moved
 
 
-def _previewer(binding: Binding, rig: Rig, state: Any, progress: Progress) -> Preview:
+def _previewer(binding: Binding, rig: Rig, state: State, progress: Progress) -> Preview:
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
     method = cutcell.ANIMATION.with_options(**{**wide_options(state), **few})
     return Preview(rig, binding, method, state.edits.reach)
@@ -39,7 +39,7 @@ def _preview(
 
 
 def _exact_preview(
-    binding: Binding, rig: Rig, edits: Edits, state: Any, progress: Progress
+    binding: Binding, rig: Rig, edits: Edits, state: State, progress: Progress
 ) -> Binding:
     return bind_as_chosen(state, rig, edits, binding.graph, progress)
 

@@ -5,13 +5,14 @@ from typing import Any
 from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from . import structure as actions
 
 NOTHING = "None (root)"
 
 
-def _parents(state: Any) -> dict[str, str]:
+def _parents(state: State) -> dict[str, str]:
     """Return the possible parents of the chosen joint, by title."""
     skeleton = state.rig.skeleton
     names = actions.may_hang_on(state.rig, state.joint)
@@ -19,7 +20,7 @@ def _parents(state: Any) -> dict[str, str]:
     return dict(zip(ui.unique_names([shorts[name] for name in names]), names, strict=True))
 
 
-def _parent(state: Any) -> dict[str, Any]:
+def _parent(state: State) -> dict[str, Any]:
     """Return the titles of possible parents, and of the chosen joint's own."""
     if not ui.has_joint(state):
         return {"options": [NOTHING], "value": NOTHING}

@@ -26,7 +26,7 @@ def chosen_template(state: State) -> str:
     return CHANGED
 
 
-def _offered(state: Any) -> dict[str, Any]:
+def _offered(state: State) -> dict[str, Any]:
     """Return the templates, and the chosen one."""
     # Also after a message, where nothing came of a choice: the menu is reset.
     now, _ = chosen_template(state), (state.rig, state.message)

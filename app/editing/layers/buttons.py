@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from .commands import recompute, take_from_file
 
@@ -41,7 +42,7 @@ def blend_button(vertices: Vertices) -> ui.Control:
         put = recompute if session.state.edits.base == "file" else take_from_file
         put(session, vertices(session.state), HALF, "Blend")
 
-    def label(state: Any) -> str:
+    def label(state: State) -> str:
         return "Blend with computed" if state.edits.base == "file" else "Blend with file"
 
     return ui.button(label, act, icon="opacity", visible=ui.has_weights)

@@ -10,6 +10,7 @@ from cutcell.runtime.display import count, listed
 
 from ...document.selection import selected
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from ..compute import stack
@@ -22,17 +23,18 @@ NEW = "A new layer covers the selection, or else everything."
 LATE = ("binding",)
 
 
-def _layer(state: Any) -> Layer | None:
+def _layer(state: State) -> Layer | None:
     """Return the chosen layer."""
     layers = state.edits.layers
     return layers[state.layer] if state.layer is not None and state.layer < len(layers) else None
 
 
-def _rows(state: Any) -> dict[str, Any]:
+def _rows(state: State) -> dict[str, Any]:
     """Return the rows of the list, the topmost layer first, and the chosen one."""
     layers = state.edits.layers
     rows = [(one.title, _extent(one), one.opacity * one.on) for one in reversed(layers)]
-    chosen = -1 if _layer(state) is None else len(layers) - 1 - state.layer
+    place = state.layer
+    chosen = -1 if place is None or _layer(state) is None else len(layers) - 1 - place
     return {"rows": rows, "chosen": chosen}
 
 
@@ -55,8 +57,8 @@ def _choose(session: Session, row: int) -> None:
     state.layer = None if place == state.layer else place
 
 
-def _about(state: Any) -> str:
-    """Say what the chosen layer does."""
+def _about(state: State) -> str:
+    """Describe the chosen layer."""
     layer = _layer(state)
     if layer is None:
         return ABOUT
@@ -70,7 +72,7 @@ def _about(state: Any) -> str:
 
 
 def _sets(name: str) -> Any:
-    """Return what changes a field of the chosen layer by the value of a control."""
+    """Return an action that sets a field of the chosen layer."""
 
     def act(session: Session, value: Any) -> None:
         if session.state.layer is not None:
@@ -84,9 +86,11 @@ def _reads(name: str, default: Any) -> Any:
 
 
 def _moves(by: int) -> Any:
-    def can(state: Any) -> bool:
+    def can(state: State) -> bool:
         place = state.layer
-        return _layer(state) is None or not 0 <= place + by < len(state.edits.layers)
+        if place is None or _layer(state) is None:
+            return True
+        return not 0 <= place + by < len(state.edits.layers)
 
     def act(session: Session) -> None:
         commands.change(session, lambda edits, place: stack.moved(edits, place, by))
@@ -99,7 +103,7 @@ def _delete(session: Session) -> None:
 
 
 def _adds(content: Any) -> Any:
-    """Return what adds a layer over the selection, or over everything."""
+    """Return an action that adds a layer over the selection, or over everything."""
 
     def act(session: Session) -> None:
         chosen = selected(session.state)

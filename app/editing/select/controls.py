@@ -1,7 +1,5 @@
 """The selection: what is selected, what its weights are, and what is done with them."""
 
-from typing import Any
-
 import panel_material_ui as pmui
 
 from cutcell.runtime.display import count
@@ -9,6 +7,7 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected, selected_vertices
 from ...document.session import Session
+from ...document.state import State
 from ...looks.histogram import histogram_rows, in_bars
 from ...widgets import controls as ui
 from ...widgets.weights_table import Histogram, WeightsTable
@@ -23,7 +22,7 @@ ALL = "All bones"
 LATE = ("binding", "brush_selection")
 
 
-def _about(state: Any) -> str:
+def _about(state: State) -> str:
     chosen = selected(state)
     if chosen is None:
         return "No vertices are selected."
@@ -31,20 +30,20 @@ def _about(state: Any) -> str:
     return f"{count(int(chosen.sum()), 'vertex')} of {len(chosen):,} selected.{limits}"
 
 
-def _is_selected(state: Any) -> bool:
+def _is_selected(state: State) -> bool:
     return selected(state) is not None
 
 
-def _move_label(state: Any) -> str:
+def _move_label(state: State) -> str:
     name = ui.joint_title(state.rig, state.joint) if ui.has_joint(state) else "the bone"
     return f"Move weight to {name}"
 
 
-def _sources(state: Any) -> list[str]:
+def _sources(state: State) -> list[str]:
     return [ALL, *([] if state.rig is None else short_names(state.rig.skeleton.names))]
 
 
-def _source(state: Any) -> int:
+def _source(state: State) -> int:
     source = None if state.rig is None else source_joint(state)
     return 0 if source is None else source + 1
 
@@ -54,10 +53,10 @@ def _choose_source(session: Session, place: int) -> None:
     session.state.move_from = names[place - 1] if place else ""
 
 
-def _bars_text(state: Any) -> str:
+def _bars_text(state: State) -> str:
     if not ui.has_joint(state) or state.weights is None:
         return ""
-    chosen, name = in_bars(state, state.memo), ui.joint_title(state.rig, state.joint)
+    chosen, name = in_bars(state), ui.joint_title(state.rig, state.joint)
     if chosen is None:
         which = "selected vertices" if _is_selected(state) else "all vertices"
         return f"Weights of {name} at {which}, without zeros. Click or drag across bars."
@@ -68,7 +67,7 @@ def _choose_bars(session: Session, bars: tuple[int, int]) -> None:
     session.state.bars = None if bars == session.state.bars else bars
 
 
-def _is_bone(state: Any) -> bool:
+def _is_bone(state: State) -> bool:
     return bool(state.weights_shown == "bone")
 
 

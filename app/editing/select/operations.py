@@ -19,6 +19,7 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected, selected_vertices
 from ...document.session import Session
+from ...document.state import State
 from ...looks.selection import neighbours_of
 from ..compute import operations as ops
 from ..compute.selected import Selected
@@ -46,7 +47,7 @@ def selected_rows(session: Session) -> Selected:
     return _limits(state, np.flatnonzero(chosen))
 
 
-def _limits(state: Any, vertices: NDArray[np.intp]) -> Selected:
+def _limits(state: State, vertices: NDArray[np.intp]) -> Selected:
     """Return vertices with what limits their weights."""
     names = locked_names(state.edits)
     masked = locked_weights(state.edits, state.rig, state.binding.graph)
@@ -90,7 +91,7 @@ def by_joint(name: str, operation: Callable[..., NDArray[np.float64]], sign: flo
     return act
 
 
-def source_joint(state: Any) -> int | None:
+def source_joint(state: State) -> int | None:
     """Return the joint whose weight is moved; None for all."""
     names = state.rig.skeleton.names
     return names.index(state.move_from) if state.move_from in names else None
@@ -119,10 +120,12 @@ def move(session: Session) -> None:
 def smooth(session: Session, through: bool = False) -> None:
     """Smooth weights of the selection over the surface, or through the body."""
     state = session.state
-    neighbours = neighbours_of(state, session.memo)
+    neighbours = neighbours_of(state)
     if through and state.binding is not None:
         graph = state.binding.graph
-        neighbours = session.memo("inner neighbours", (graph,), lambda: Neighbours.through(graph))
+        neighbours = session.state.memo(
+            "inner neighbours", (graph,), lambda: Neighbours.through(graph)
+        )
 
     def smoothed(rows: Selected) -> csr_array:
         return ops.limited(rows, ops.smoothed(rows, neighbours, state.passes))
@@ -154,7 +157,7 @@ def _mirror(session: Session) -> Mirror:
         except CutcellError:
             return mirror_of(session.state)  # joints are mirrored, the mesh is not
 
-    plane: Mirror | None = session.memo("mirror of vertices", (rig,), find)
+    plane: Mirror | None = session.state.memo("mirror of vertices", (rig,), find)
     if plane is None:
         raise ParameterError("no joint has a partner on the other side")
     return plane
@@ -209,7 +212,7 @@ def paste(session: Session, by: str = "nearest") -> None:
 def edit(session: Session, vertex: int, joint: int, value: float) -> None:
     """Give one vertex, with its copies at a seam, a weight."""
     state = session.state
-    welded = neighbours_of(state, session.memo).welded
+    welded = neighbours_of(state).welded
     vertices = np.flatnonzero(welded == welded[vertex])
     try:
         rows_of = _limits(state, vertices)

@@ -13,8 +13,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.histogram import in_bars
 from ...looks.selection import neighbours_of
-from ...messages.received import Lasso, PickStrongest
-from ...messages.sent import Through
+from ...server.protocol.received import Lasso, PickStrongest
+from ...server.protocol.sent import Through
 from ..brush.strokes import clear_selection, invert_selection, select
 from ..compute.condition import vertices_where
 
@@ -95,14 +95,14 @@ def grow(session: Session) -> None:
     """Add the neighbours of selected vertices."""
     chosen = selected(session.state)
     if chosen is not None:
-        select(session, neighbours_of(session.state, session.memo).grown(chosen))
+        select(session, neighbours_of(session.state).grown(chosen))
 
 
 def shrink(session: Session) -> None:
     """Remove the rim of the selection."""
     chosen = selected(session.state)
     if chosen is not None:
-        select(session, neighbours_of(session.state, session.memo).shrunk(chosen))
+        select(session, neighbours_of(session.state).shrunk(chosen))
 
 
 def select_joint(session: Session) -> None:
@@ -155,7 +155,7 @@ def finding_vertices(state: State) -> NDArray[np.intp]:
 
 
 def select_finding(session: Session) -> None:
-    """Select what the finding that is looked at names: vertices, and those of faces."""
+    """Select the vertices and the corners of faces that the chosen finding names."""
     state = session.state
     chosen = np.zeros(len(state.rig.mesh.vertices), np.bool_)
     chosen[finding_vertices(state)] = True
@@ -188,7 +188,7 @@ def select_where(session: Session, condition: str) -> None:
 
 def select_bars(session: Session) -> None:
     """Select the vertices of the chosen bars of the histogram."""
-    chosen = in_bars(session.state, session.memo)
+    chosen = in_bars(session.state)
     if chosen is not None:
         _choose_some(session, chosen)
 

@@ -11,7 +11,8 @@ from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected
 from ...document.session import Session
-from ...messages.received import EditWeight, Message, Page, PickVertex, Sort
+from ...document.state import State
+from ...server.protocol.received import EditWeight, Message, Page, PickVertex, Sort
 from .operations import edit
 
 ROWS = 20
@@ -38,7 +39,7 @@ class Table:
     values: NDArray[np.float64]
 
 
-def table_of(state: Any) -> Table | None:
+def table_of(state: State) -> Table | None:
     """Return the whole table; None without a selection."""
     chosen = selected(state)
     if not state.table or chosen is None or state.weights is None:
@@ -59,14 +60,14 @@ def table_of(state: Any) -> Table | None:
     return Table(columns, table[np.argsort(-key if largest_first else key, kind="stable")])
 
 
-def _table(state: Any) -> Table | None:
+def _table(state: State) -> Table | None:
     choices = state.brush_selection, state.joint, state.table, *state.table_order
     inputs = state.rig, state.weights, *choices
     table: Table | None = state.memo("weights table", inputs, lambda: table_of(state))
     return table
 
 
-def table_parts(state: Any) -> dict[str, Any]:
+def table_parts(state: State) -> dict[str, Any]:
     """Return the current page of the table as the widget's parameters."""
     table = _table(state)
     if table is None:
@@ -90,7 +91,7 @@ def table_parts(state: Any) -> dict[str, Any]:
     return {"content": content}
 
 
-def table_text(state: Any) -> str:
+def table_text(state: State) -> str:
     """Return how much the selection differs from the file; what to do without a selection."""
     chosen = selected(state)
     if not state.table or state.weights is None:

@@ -12,6 +12,7 @@ from cutcell.runtime.display import listed
 from cutcell_viewers.short_names import short_names
 
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from ..correct.commands import check_alone, correct
@@ -21,8 +22,8 @@ from .results import is_wanted
 AUTOMATIC, NOBODY = "By name and position", "None"
 
 
-def about(state: Any) -> str:
-    """Return what the map shows, and which joints have no partner."""
+def about(state: State) -> str:
+    """Describe the map, and list joints without a partner."""
     image = state.mirror_image
     if image is None:
         return "The mirror image is computed."
@@ -34,7 +35,7 @@ def about(state: Any) -> str:
     return f"{text} Joints without a partner: {listed(alone)}." if alone else text
 
 
-def _pairs(state: Any) -> list[tuple[int, int, str]]:
+def _pairs(state: State) -> list[tuple[int, int, str]]:
     """Return the joints of each pair, and what pairs them; -1 for the partner of one alone."""
     mirror = _mirror(state)
     if mirror is None:
@@ -46,7 +47,7 @@ def _pairs(state: Any) -> list[tuple[int, int, str]]:
     return [(one, *pair) for one, pair in joints if pair[0] > one or (pair[0] < 0 and deform[one])]
 
 
-def _rows(state: Any) -> dict[str, Any]:
+def _rows(state: State) -> dict[str, Any]:
     """Return a row for each pair, and that of the chosen joint."""
     pairs, names = _pairs(state), [*short_names(_names(state)), "none"]
     rows = [(f"{names[one]} \u2013 {names[other]}", how, 0.0) for one, other, how in pairs]
@@ -58,11 +59,11 @@ def _choose(session: Session, row: int) -> None:
     session.state.joint = _pairs(session.state)[row][0]
 
 
-def _names(state: Any) -> tuple[str, ...]:
+def _names(state: State) -> tuple[str, ...]:
     return state.rig.skeleton.names if ui.has_joint(state) else ()
 
 
-def _partner(state: Any) -> int:
+def _partner(state: State) -> int:
     """Return the place in the menu of what is set for the chosen joint."""
     names = _names(state)
     partner = state.rig.partners.get(names[state.joint]) if names else None
@@ -89,11 +90,11 @@ def set_partner(session: Session, place: int) -> None:
     correct(session, replace(edits, joints=joints))
 
 
-def _label(state: Any) -> str:
+def _label(state: State) -> str:
     return f"Partner of {ui.joint_title(state.rig, state.joint)}" if ui.has_joint(state) else ""
 
 
-def _mirror(state: Any) -> Mirror | None:
+def _mirror(state: State) -> Mirror | None:
     return None if state.own is None or state.bare else mirror_of(state)
 
 

@@ -66,7 +66,7 @@ def _strong_line(text: str) -> Any:
     return _line(text, color="text.primary")
 
 
-def _findings(state: Any) -> list[Any]:
+def _findings(state: State) -> list[Any]:
     """Return the findings below a heading for each severity, and last what is done."""
     if state.diagnosis is None:
         return []
@@ -81,7 +81,7 @@ def _findings(state: Any) -> list[Any]:
     ]
 
 
-def _exported(state: Any) -> list[Any]:
+def _exported(state: State) -> list[Any]:
     """Return the findings about the weights that an export contains."""
     if state.edits.base == "file" and not state.edits.layers:
         lines: list[Any] = [_line("The same as in the file.")]
@@ -252,8 +252,8 @@ def _joints(rig: Rig, joints: list[int]) -> str:
     return ui.joint_title(rig, joints[0]) if len(joints) == 1 else f"these {len(joints)} joints"
 
 
-def _repairs(state: Any) -> list[Any]:
-    """Return what can be repaired at once, and what was repaired: before and after."""
+def _repairs(state: State) -> list[Any]:
+    """Return the repair of all findings, and the repairs that were made: before and after."""
     findings = () if state.diagnosis is None else state.diagnosis.findings
     able = [one.code for one in findings if one.repair and one.code not in _in_vain(state)]
     rows: list[Any] = []

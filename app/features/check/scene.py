@@ -10,7 +10,6 @@ from cutcell_viewers.palette import BODY, MARK, Color
 from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import weight_colors
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...looks.character import character, plain
 from .choices import EXPORT
@@ -25,24 +24,26 @@ def named(finding: Finding) -> str:
     return ", ".join(count(len(which), kind) for kind, which in kinds.items() if len(which))
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Check; plain while no finding is selected."""
     rig, finding = state.rig, state.selected_finding
     if state.tried is not None:
-        style, legend = memo("tried", (rig, state.tried), lambda: weight_colors(rig, state.tried))
-        return Description(character(state, memo, bones_coloured=True, **style), legend=legend)
+        style, legend = state.memo(
+            "tried", (rig, state.tried), lambda: weight_colors(rig, state.tried)
+        )
+        return Description(character(state, bones_coloured=True, **style), legend=legend)
     marks = {}
     if finding is not None:
-        marks = memo("finding", (rig, finding), lambda: finding_marks(rig, finding))
+        marks = state.memo("finding", (rig, finding), lambda: finding_marks(rig, finding))
     if not marks:
-        return plain(state, memo)
-    actors = character(state, memo, opacity=BODY_OPACITY_OF_FINDINGS, behind=True)
+        return plain(state)
+    actors = character(state, opacity=BODY_OPACITY_OF_FINDINGS, behind=True)
     swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
-    placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
+    placed = state.memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
     if placed is not None:
         is_export = state.finding.startswith(EXPORT)
         weighted = state.export_diagnosis.rig if is_export else rig
-        skin = memo("finding skin", (weighted,), lambda: Skin.of_weights(weighted.weights))
+        skin = state.memo("finding skin", (weighted,), lambda: Skin.of_weights(weighted.weights))
         actors["body"] = replace(actors["body"], skin=skin)
         actors.pop("vertex", None)  # it would stay at its place at rest
         whose, turned = "exported" if is_export else "file", rig.skeleton.names[finding.pose.joint]

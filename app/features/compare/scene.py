@@ -14,7 +14,6 @@ from cutcell_viewers.short_names import short_names
 from cutcell_viewers.skin import Skin
 from cutcell_viewers.weights_scene import weight_colors
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...looks.character import character
 from ...looks.methods import shown_title, weights_of
@@ -26,15 +25,15 @@ WAITING = 0.28
 """Opacity of a body without weights."""
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Compare."""
-    shared = character(state, memo)
+    shared = character(state)
     if state.binding is None:
         return Description(shared, pose=pose_of(state))
     plain = shared.pop("body")
     names = list(state.methods)
     tables = {name: weights_of(state, name) for name in names}
-    styles, legend = looks_of(state, tables, memo)
+    styles, legend = looks_of(state, tables)
     actors: dict[str, Actor] = {}
     for view, name in enumerate(names):
         key = f"body {view}" if view else "body"
@@ -42,21 +41,21 @@ def scene(state: State, memo: Memo) -> Description:
         if weights is None:
             actors[key] = replace(plain, view=view, opacity=WAITING)
             continue
-        skin = memo(f"skin {name}", (weights,), partial(Skin.of_weights, weights))
+        skin = state.memo(f"skin {name}", (weights,), partial(Skin.of_weights, weights))
         actors[key] = replace(plain, view=view, skin=skin, **styles[name])
-        actors |= region_dots(state, memo, actors[key])
+        actors |= region_dots(state, actors[key])
     captions = tuple(caption_of(state, name) for name in names)
     return Description({**actors, **shared}, pose=pose_of(state), legend=legend, views=captions)
 
 
-def region_dots(state: State, memo: Memo, body: Actor) -> dict[str, Actor]:
+def region_dots(state: State, body: Actor) -> dict[str, Actor]:
     """Return dots on the region that is looked at, in the view of a body."""
     regions = () if state.disagreement is None else state.disagreement.regions
     chosen = [one.vertices for one in regions if one.key == state.region]
     if not chosen:
         return {}
     inputs = body.points, body.skin, chosen[0]
-    dots = memo(f"region {body.view}", inputs, lambda: vertex_dots(body, chosen[0]))
+    dots = state.memo(f"region {body.view}", inputs, lambda: vertex_dots(body, chosen[0]))
     return {f"region {body.view}": replace(dots, view=body.view)}
 
 
@@ -82,7 +81,7 @@ def subtracted(state: State) -> Any:
 
 
 def looks_of(
-    state: State, tables: dict[str, Any], memo: Memo
+    state: State, tables: dict[str, Any]
 ) -> tuple[dict[str, dict[str, Any]], Legend | None]:
     """Return the colours of each method's body, and the legend of all."""
     computed = {name: table for name, table in tables.items() if table is not None}
@@ -93,7 +92,7 @@ def looks_of(
         return error_looks(state, computed)
     if base is not None:
         differences = {
-            name: memo(
+            name: state.memo(
                 f"apart {name}", (table, base, which), partial(_difference, table, base, which)
             )
             for name, table in computed.items()
@@ -106,7 +105,7 @@ def looks_of(
         title = f"Weight of {short_names(state.rig.skeleton.names)[which]}, difference"
         return styles, Legend(title, "difference", f"−{top:g}", f"+{top:g}")
     for name, table in computed.items():
-        styles[name], legend = memo(
+        styles[name], legend = state.memo(
             f"colors {name}",
             (table, which, branch),
             partial(weight_colors, state.rig, table, which, branch),

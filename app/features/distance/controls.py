@@ -1,9 +1,8 @@
 """Distance: how far the chosen bone is, through the body."""
 
-from typing import Any
-
 from ...document.session import Session
-from ...looks.cut_controls import CUTTING
+from ...document.state import State
+from ...looks.controls import CUTTING
 from ...looks.measures import MAX_MEASURES, MEASURES
 from ...widgets import controls as ui
 
@@ -16,7 +15,7 @@ SIDE_BY_SIDE = (
 )
 
 
-def _one(state: Any) -> bool:
+def _one(state: State) -> bool:
     """Return whether there is one view only."""
     return not state.measures
 

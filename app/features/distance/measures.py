@@ -19,7 +19,6 @@ from cutcell_viewers.distance_scene import (
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...looks.character import BODY_OPACITY_WITH_PATH, character
 from ...looks.measures import CONVERGED, MEASURES
@@ -31,7 +30,7 @@ INSIDE_VOXELS = 0.06
 WITH_RESOLUTION = ("voxel", "6", "26", "any")
 
 
-def side_by_side(state: State, memo: Memo) -> Description:
+def side_by_side(state: State) -> Description:
     """Return the scene of some measures, one view each."""
     names, rig, joint = state.measures, state.rig, state.joint
     results = {name: state.measured.get(name) for name in names}
@@ -39,7 +38,7 @@ def side_by_side(state: State, memo: Memo) -> Description:
     converged = results.get("converged")
     farthest = max((distance_limits(one.vertices)[1] for one in computed), default=1.0)
     limits = (0.0, state.scale_end or farthest)
-    shared = character(state, memo)
+    shared = character(state)
     plain = shared.pop("body")
     actors: dict[str, Actor] = {}
     legend, captions = None, []
@@ -51,23 +50,23 @@ def side_by_side(state: State, memo: Memo) -> Description:
             actors[body] = replace(plain, view=view, opacity=WAITING)
             captions.append(f"{title} · {'computing' if runs else 'waiting'}")
             continue
-        colors, legend = memo(
+        colors, legend = state.memo(
             f"measure {name}",
             (rig, one, joint, limits),
             partial(distance_colors, rig, one.vertices, joint, limits),
         )
         if converged is not None and name != "converged":
             title += f" · error {mean_error(one, converged):.1%}"
-        path = _path(state, memo, name, one)
+        path = _path(state, name, one)
         if path is not None and len(path):
-            tube = memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
+            tube = state.memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
             actors[f"path {view}"] = replace(tube, view=view)
             title += f" · {file_units(one.vertices[state.vertex], rig)}"
         elif path is not None:
             title += " · no path"
         see = 1.0 if path is None else BODY_OPACITY_WITH_PATH
         if len(one.sides):
-            voxels = memo("voxels", (rig, one, limits), partial(_voxels, rig, one, limits))
+            voxels = state.memo("voxels", (rig, one, limits), partial(_voxels, rig, one, limits))
             actors["voxels"] = replace(voxels, view=view, follows_wavefront=state.wave, opacity=see)
             see = see if see == 1 else INSIDE_VOXELS
         actors[body] = replace(
@@ -89,12 +88,14 @@ def title_of(name: Measure, resolution: int) -> str:
     return f"{MEASURES[name]}, R = {resolution}"
 
 
-def _path(state: State, memo: Memo, name: str, one: MeasuredDistance) -> Any:
+def _path(state: State, name: str, one: MeasuredDistance) -> Any:
     """Return the path from the clicked vertex in the scene's space, (p, 3), or None."""
     if not state.path or state.vertex is None:
         return None
     rig, vertex = state.rig, state.vertex
-    return memo(f"path {name}", (rig, one, vertex), lambda: to_scene(rig, one.path_from(vertex)))
+    return state.memo(
+        f"path {name}", (rig, one, vertex), lambda: to_scene(rig, one.path_from(vertex))
+    )
 
 
 def _voxels(rig: Rig, one: MeasuredDistance, limits: tuple[float, float]) -> Actor:

@@ -9,7 +9,6 @@ from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY, MARK, SOURCE
 from cutcell_viewers.start_scene import first_distances, start_scene
 
-from ...derive.memo import Memo
 from ...document.framing import theme_of
 from ...document.state import State
 from ...looks.character import BODY_OPACITY_WITH_PATH, character, cut_of, has_field, in_scene
@@ -18,42 +17,44 @@ from ...looks.section import field_section, winding_section
 from .measures import side_by_side
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Distance: a bone's field, on the surface and inside."""
     if state.binding is None:
-        return Description(character(state, memo))
+        return Description(character(state))
     if has_field(state) and state.measures:
-        return side_by_side(state, memo)
+        return side_by_side(state)
     cut = cut_of(state)
     if cut is not None and state.cut_face == "winding":
         colors, legend, limits = dict[str, Any](), Legend(""), (0.0, 1.0)
     elif has_field(state):
-        colors, legend, limits = _surface(state, memo)
+        colors, legend, limits = _surface(state)
     else:
-        return Description(character(state, memo), cut=cut)
-    path = path_of(state, memo)
+        return Description(character(state), cut=cut)
+    path = path_of(state)
     inside = (path is not None and len(path) > 0) or state.starts
     see = BODY_OPACITY_WITH_PATH if inside and cut is None else 1.0
-    actors = character(state, memo, **colors, follows_wavefront=state.wave, opacity=see)
+    actors = character(state, **colors, follows_wavefront=state.wave, opacity=see)
     swatches = legend.swatches
     if cut is not None and state.cut_face == "winding":
-        face, legend = winding_section(state, memo, cut)
+        face, legend = winding_section(state, cut)
         actors |= face
         swatches = legend.swatches
     elif cut is not None:
-        face = field_section(state, memo, cut, state.field, limits)
+        face = field_section(state, cut, state.field, limits)
         actors |= {
             name: replace(actor, follows_wavefront=state.wave) for name, actor in face.items()
         }
     if state.starts and has_field(state):
-        parts, swatch = _starts(state, memo)
+        parts, swatch = _starts(state)
         actors |= parts
         swatches += (swatch,)
     if path is not None and not len(path):
         swatches += ((MARK, "no path leads from the vertex to the bone"),)
     elif path is not None:
         rig = state.rig
-        actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, in_scene(state, path)))
+        actors["path"] = state.memo(
+            "tube", (rig, path), lambda: path_tube(rig, in_scene(state, path))
+        )
         length = state.field[state.binding.graph.vertex_node[state.vertex]]
         swatches += ((MARK, f"shortest path, {file_units(length, rig)}"),)
     if state.wave:
@@ -62,7 +63,7 @@ def scene(state: State, memo: Memo) -> Description:
     return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
 
 
-def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+def _surface(state: State) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
     """Return the colours of the body, the legend and the field's limits.
 
     Distances at vertices are available at once; those inside follow and may be larger.
@@ -79,14 +80,14 @@ def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[fl
         limits = (limits[0], end or limits[1])
         return *distance_colors(rig, distances, joint, limits), limits
 
-    return memo("distance", (rig, binding.distances, field, joint, end), make)
+    return state.memo("distance", (rig, binding.distances, field, joint, end), make)
 
 
-def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]]:
+def _starts(state: State) -> tuple[dict[str, Actor], tuple[Any, str]]:
     """Return the samples and sources, and their swatch in the legend."""
     rig, distances, joint, theme = state.rig, state.binding.distances, state.joint, theme_of(state)
     inputs = (rig, distances, joint, theme.name)
-    parts = memo("starts", inputs, lambda: start_scene(rig, distances, joint, theme))
+    parts = state.memo("starts", inputs, lambda: start_scene(rig, distances, joint, theme))
     first = first_distances(distances, joint)
     most = float(first.max(initial=0))
     return parts, (SOURCE, f"{len(first)} sources, up to {file_units(most, rig)} from the bone")

@@ -3,9 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell import build_graph
-from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from cutcell.runtime.progress import Progress, silent
+from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
 from cutcell_viewers.distance_scene import distance_legend, distance_limits, file_units
@@ -21,7 +19,6 @@ from cutcell_viewers.palette import MARK
 from cutcell_viewers.ray_slice import RaySlice, slice_rays
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
-from ...derive.memo import Memo
 from ...document.framing import theme_of
 from ...document.state import State
 from ...looks.character import GRAPH_BODY_OPACITY, cells_of, character, cut_of
@@ -45,26 +42,26 @@ SHELL = 0.5
 """Opacity of the body behind a slice."""
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Graph: the layers of the graph, or a slice's rays."""
     if state.slicing:
-        return _slice(state, memo)
+        return _slice(state)
     cut = cut_of(state)
     thick = (0.0, 0.0) if cut is None else slab_of(state)
-    actors = character(state, memo, visible=state.body, opacity=body_opacity(state))
-    layers, legend = graph_layers(state, memo)
+    actors = character(state, visible=state.body, opacity=body_opacity(state))
+    layers, legend = graph_layers(state)
     actors |= layers
     if cut is not None and state.graph is not None:
-        face, legend = _face(state, memo, cut, legend)
+        face, legend = _face(state, cut, legend)
         actors |= face
     graph = state.shown_graph
     if state.node is not None and graph is not None and state.node < len(graph.nodes):
         inputs = (state.rig, graph, state.node, state.dark)
-        actors |= memo("node", inputs, lambda: node_marks(*inputs[:3], theme_of(state)))
-    path = sight_of(state, memo)
+        actors |= state.memo("node", inputs, lambda: node_marks(*inputs[:3], theme_of(state)))
+    path = sight_of(state)
     if path is not None and len(path):
         places = to_scene(state.rig, state.graph.lattice.to_file(path))
-        actors["path"] = memo("sight", (path,), lambda: path_tube(state.rig, places))
+        actors["path"] = state.memo("sight", (path,), lambda: path_tube(state.rig, places))
         hint = f"lines of sight that vertex {state.vertex:,} is measured along"
         swatches = ((MARK, hint), *(() if legend is None else legend.swatches))
         legend = replace(legend or Legend(_title(state)), swatches=swatches)
@@ -75,20 +72,13 @@ def scene(state: State, memo: Memo) -> Description:
     return Description(actors, cut=cut, legend=legend)
 
 
-def build_shown(inputs: tuple[Any, ...], progress: Progress = silent) -> CutCellGraph:
-    """Return the graph that `Choices.graph_inputs` describe."""
-    mesh, resolution, connectivity, threshold, orient = inputs
-    options = {"connectivity": connectivity, "winding_threshold": threshold, "orient": orient}
-    return build_graph(mesh, resolution, **options, progress=progress)
-
-
-def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | None]:
+def graph_layers(state: State) -> tuple[dict[str, Actor], Legend | None]:
     """Return the graph's actors, and the legend of their colours."""
     rig, graph, theme = state.rig, state.shown_graph, theme_of(state)
     if graph is None:
         return {}, None
-    field, style, legend = _field(state, memo)
-    drawn = memo(
+    field, style, legend = _field(state)
+    drawn = state.memo(
         "graph",
         (rig, graph, theme.name, field, style.get("shades", ""), style.get("colors")),
         lambda: graph_scene(rig, graph, theme=theme, field=field, **style).actors,
@@ -105,38 +95,36 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
     return layers, legend
 
 
-def _face(
-    state: State, memo: Memo, cut: Cut, legend: Legend | None
-) -> tuple[dict[str, Actor], Legend | None]:
+def _face(state: State, cut: Cut, legend: Legend | None) -> tuple[dict[str, Actor], Legend | None]:
     """Return the face of the cut, if one is chosen, and the legend with its colours."""
     swatches = () if legend is None else legend.swatches
     if state.graph_face == "winding":
-        face, legend = winding_section(state, memo, cut)
+        face, legend = winding_section(state, cut)
         legend = replace(legend, swatches=(*swatches, *legend.swatches))
     elif state.graph_face == "field" and (field := state.field) is not None:
         limits = distance_limits(field)
-        face = field_section(state, memo, cut, field, limits)
+        face = field_section(state, cut, field, limits)
         legend = replace(distance_legend(state.rig, state.joint, limits), swatches=swatches)
     else:
         return {}, legend
     return {**face, "inside": replace(face["inside"], opacity=FACE_OPACITY)}, legend
 
 
-def sight_of(state: State, memo: Memo) -> Any:
+def sight_of(state: State) -> Any:
     """Return the straight pieces of the path to the chosen vertex (p, 3), or None."""
-    return path_of(state, memo) if state.connectivity == "any" else None
+    return path_of(state) if state.connectivity == "any" else None
 
 
-def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None]:
+def _field(state: State) -> tuple[Any, dict[str, Any], Legend | None]:
     """Return the colouring of edges: values at nodes, options of `graph_scene`, the legend."""
     graph = state.shown_graph
     if state.edge_colors == "depth":
-        depth = memo("depth", (graph,), lambda: depth_field(graph))
+        depth = state.memo("depth", (graph,), lambda: depth_field(graph))
         most = distance_limits(depth)[1]
         legend = Legend("Depth below the surface", "depth", "0", file_units(most, state.rig))
         return depth, {"shades": "depth"}, legend
     if state.edge_colors == "component":
-        colors, count = memo("parts", (graph,), lambda: component_colors(graph))
+        colors, count = state.memo("parts", (graph,), lambda: component_colors(graph))
         legend = Legend(f"{count:,} connected component{'s' * (count != 1)}")
         return None, {"colors": colors}, legend
     field = state.field if state.edge_colors == "distance" else None
@@ -145,8 +133,10 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
     legend = distance_legend(state.rig, state.joint, distance_limits(field))
     if graph is not state.graph:
         of_weights = field
-        nearest = memo("nearest", (graph, state.graph), lambda: nearest_nodes(graph, state.graph))
-        field = memo("field there", (field, nearest), lambda: of_weights[nearest])
+        nearest = state.memo(
+            "nearest", (graph, state.graph), lambda: nearest_nodes(graph, state.graph)
+        )
+        field = state.memo("field there", (field, nearest), lambda: of_weights[nearest])
     return field, {"kinds": (MESH, INTERIOR, SURFACE)}, legend
 
 
@@ -179,7 +169,7 @@ def slab_of(state: State) -> tuple[float, float]:
     return (cells_of(state, state.slab * state.shown_graph.lattice.resolution),) * 2
 
 
-def _slice(state: State, memo: Memo) -> Description:
+def _slice(state: State) -> Description:
     """Return the scene of one slice: its rays, and the body behind it."""
     rig, theme = state.rig, theme_of(state)
     resolution = state.graph_resolution or state.resolution
@@ -197,18 +187,18 @@ def _slice(state: State, memo: Memo) -> Description:
     def cast(name: str, **libraries: str) -> RaySlice:
         chosen = {**options, **libraries}
         inputs = (rig, resolution, *chosen.values())
-        return memo(name, inputs, lambda: slice_rays(rig.mesh, resolution, **chosen))
+        return state.memo(name, inputs, lambda: slice_rays(rig.mesh, resolution, **chosen))
 
     chosen = {"rays": state.slice_caster, "winding": state.slice_winding}
     is_own = [*chosen.values()] == ["raster", "exact"]
     reference = None if is_own else cast("slice")
     rays = cast("slice") if is_own else cast("slice by libraries", **chosen)
-    actors, legend = memo(
+    actors, legend = state.memo(
         "slice scene",
         (rays, reference, theme.name),
         lambda: slice_scene(rig, rays, theme, reference),
     )
-    shell = character(state, memo, visible=state.body, opacity=SHELL)
+    shell = character(state, visible=state.body, opacity=SHELL)
     for name in {"bones", "bone outlines"} & shell.keys():
         shell[name] = replace(shell[name], visible=False)  # they would hide the slice
     return Description({**shell, **actors}, cut=_pulled(cut, state), legend=legend)

@@ -14,7 +14,6 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import to_hex
 from cutcell_viewers.short_names import short_names
 
-from ...derive.memo import Memo
 from ...document.side_by_side import NOW
 from ...document.state import State
 from ...editing.compute.stack import painted_vertices
@@ -31,7 +30,7 @@ NO_WEIGHT = 5e-3
 """Weights that would be shown as 0.00 are not shown."""
 
 
-def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
+def vertex_facts(state: State) -> dict[str, Any] | None:
     """Return the content of the chosen vertex's card; None if none is chosen.
 
     Returns
@@ -56,8 +55,8 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         facts["method"] = title_of(method)
     if not computed:
         return facts
-    colors = memo("colors", (rig,), lambda: colors_of(rig))
-    shorts = memo("short names", (rig.skeleton,), lambda: short_names(rig.skeleton.names))
+    colors = state.memo("colors", (rig,), lambda: colors_of(rig))
+    shorts = state.memo("short names", (rig.skeleton,), lambda: short_names(rig.skeleton.names))
 
     def bone(joint: int, **values: Any) -> dict[str, Any]:
         name, color = shown_name(rig.skeleton.names[joint]), to_hex(tuple(colors[joint]))
@@ -67,7 +66,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     artist = None if rig.weights is None or method == "artist" else rig.weights[vertex]
     either = row if artist is None else np.maximum(row, artist)
     listed = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
-    which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
+    which, sizes = state.memo("components", (binding.graph,), lambda: components(binding.graph))
     component = int(which[vertex])
     facts |= {
         "artist": artist is not None,
@@ -115,7 +114,7 @@ def _offered(state: State, weights: NDArray, distance: NDArray) -> list[int]:
     return [j for j in joints if allowed[j]][: max(len(weighted) + 1, MIN_OFFERED)]
 
 
-def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
+def node_facts(state: State) -> dict[str, Any] | None:
     """Return the content of the chosen node's card; None if none is chosen.
 
     Returns
@@ -139,7 +138,7 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         "unit": unit_of(state.rig),
         "kind": KINDS[kinds[node]],
         "position": position[0].tolist(),
-        "winding": memo(
+        "winding": state.memo(
             "node winding", (graph, node), lambda: float(winding_number(mesh, position)[0])
         ),
         "degree": len(near),

@@ -4,6 +4,7 @@ from functools import partial
 from typing import Any
 
 from ...document.session import Session
+from ...document.state import State
 from ...widgets import controls as ui
 from .steps import go
 
@@ -15,11 +16,11 @@ def _begin(session: Session) -> None:
     go(session, max(session.state.step, 0))
 
 
-def _label(state: Any) -> str:
+def _label(state: State) -> str:
     return "Start the lesson" if state.step < 0 else "Continue"
 
 
-def _rows(state: Any) -> list[Any]:
+def _rows(state: State) -> list[Any]:
     return [
         ui.button(f"{index + 1}. {step.title}", partial(go, index=index), **ui.LINE)
         for index, step in enumerate(state.lesson.steps)

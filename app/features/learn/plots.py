@@ -11,6 +11,7 @@ from cutcell.weights.paper_kernel import paper_kernel
 from cutcell_viewers.distance_scene import unit_of
 from cutcell_viewers.short_names import short_names
 
+from ...document.state import State
 from ...looks.measures import CONVERGED, MEASURES
 
 POINTS = 80
@@ -18,7 +19,7 @@ MAX_MARKS = 6
 """Joints of the clicked vertex that are marked, the nearest first."""
 
 
-def plot_of(state: Any, kind: str) -> dict[str, Any] | None:
+def plot_of(state: State, kind: str) -> dict[str, Any] | None:
     """Return a plot of `lesson.PLOTS`, or None while there is nothing to show.
 
     "falloff" needs a clicked vertex, "error" the result `error_curves`, which is computed while the
@@ -27,7 +28,7 @@ def plot_of(state: Any, kind: str) -> dict[str, Any] | None:
     return _falloff(state) if kind == "falloff" else _error(state)
 
 
-def _falloff(state: Any) -> dict[str, Any] | None:
+def _falloff(state: State) -> dict[str, Any] | None:
     """Return weights over distances at the clicked vertex, relative to those of the nearest joint.
 
     The curve is that of the falloff alone; the one for animation is also smoothed and cut off.
@@ -62,7 +63,7 @@ def _falloff(state: Any) -> dict[str, Any] | None:
     }
 
 
-def _error(state: Any) -> dict[str, Any] | None:
+def _error(state: State) -> dict[str, Any] | None:
     """Return the mean error over the resolution, a curve for each connectivity."""
     if state.error_curves is None:
         return None

@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 from ...document.session import Session
+from ...document.state import State
 from ...looks.measures import RESOLUTIONS as COMPARED
 
 RESOLUTIONS = [(n, str(n)) for n in (8, 12, 16, 20, 24, 32, 40, 48, 64, 96, 128)]
@@ -24,7 +25,7 @@ SLIDERS: dict[str, tuple[str, list[tuple[Any, str]]]] = {
 NAME = re.compile(r"\{(\w+)\}")
 
 
-def sliders_of(state: Any, text: str) -> dict[str, dict[str, Any]]:
+def sliders_of(state: State, text: str) -> dict[str, dict[str, Any]]:
     """Return the sliders that a text names, for `sentence.js`."""
     names = [name for name in NAME.findall(text) if name in SLIDERS]
     return {

@@ -15,6 +15,7 @@ from ...document.opening import Opening, Request, motion
 from ...document.selection import selected
 from ...document.session import BeforeLesson, Session
 from ...document.side_by_side import SINGLE, standard
+from ...document.state import State
 from ...looks.methods import shown_title, weights_of
 from .lesson import Step
 from .sliders import slide, sliders_of
@@ -96,7 +97,7 @@ def answer(session: Session, value: Any) -> None:
 
 
 def offer(session: Session, index: int) -> None:
-    """Choose what a button of the step says."""
+    """Apply the choices of a button of the step."""
     state = session.state
     queries = _offers(state)
     if 0 <= index < len(queries) and state.rig is not None:
@@ -117,7 +118,7 @@ def choose(session: Session, name: str, value: Any) -> None:
         slide(session, name, value)
 
 
-def pressed_offers(state: Any) -> list[bool]:
+def pressed_offers(state: State) -> list[bool]:
     """Return for each button of the step whether what it chooses is chosen."""
     pressed = []
     if state.rig is None:
@@ -131,7 +132,7 @@ def pressed_offers(state: Any) -> list[bool]:
     return pressed
 
 
-def named_values(state: Any) -> dict[str, dict[str, Any]]:
+def named_values(state: State) -> dict[str, dict[str, Any]]:
     """Return the choices that the text of the step names, as sliders of `sentence.js`."""
     step = state.lesson_step
     return {} if step is None else sliders_of(state, step.text)
@@ -175,8 +176,8 @@ def show(
     session.tasks.add(Opening(session, request))
 
 
-def of_character(state: Any, arrival: dict[str, Any]) -> dict[str, Any]:
-    """Return what an address says of the open character, as parameters of the state."""
+def of_character(state: State, arrival: dict[str, Any]) -> dict[str, Any]:
+    """Return an address's entries for the open character, as parameters of the state."""
     names = list(state.rig.skeleton.names)
     own = ("vertex", "clip", "methods", *SINGLE, "settled", "turns")
     plain: dict[str, Any] = {name: arrival[name] for name in own if name in arrival}
@@ -198,7 +199,7 @@ def _prepare(session: Session) -> None:
     state.pose_colors = colors  # the brush shows weights: they would be the answer
 
 
-def painted_score(state: Any, step: Step) -> float:
+def painted_score(state: State, step: Step) -> float:
     """Return the agreement of the painted vertices with what a joint and those below it move.
 
     It is the number of vertices in both, over that of vertices in either.
@@ -209,7 +210,7 @@ def painted_score(state: Any, step: Step) -> float:
     return _agreement(painted, branch_weights(state, step.answer.joint))
 
 
-def painted_scores(state: Any) -> dict[str, float]:
+def painted_scores(state: State) -> dict[str, float]:
     """Return the same for each method that is compared, by its caption."""
     step, painted = state.lesson_step, selected(state)
     if step is None or step.answer.kind != "paint" or painted is None or state.panel != "compare":
@@ -230,7 +231,7 @@ def _agreement(painted: NDArray[np.bool_], weights: NDArray[np.float64]) -> floa
 
 
 def branch_weights(
-    state: Any, name: str, weights: NDArray[np.float64] | None = None
+    state: State, name: str, weights: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """Return the weight of a joint and of all joints below it, shape (n,)."""
     skeleton, file = state.rig.skeleton, state.rig.weights
@@ -257,12 +258,12 @@ def _answer_by_click(session: Session, kind: str) -> None:
     answer(session, clickable(state)[index])
 
 
-def clickable(state: Any) -> list[str]:
+def clickable(state: State) -> list[str]:
     """Return the answers that clicks give: the joints, and `NO_PATH`."""
     return [*state.rig.skeleton.names, NO_PATH]
 
 
-def followed(state: Any) -> NDArray[np.uint16]:
+def followed(state: State) -> NDArray[np.uint16]:
     """Return the answer by a click on each vertex, as an index of `clickable`, shape (n,)."""
     joints = state.weights.argmax(axis=1)
     if state.binding is not None:
@@ -270,6 +271,6 @@ def followed(state: Any) -> NDArray[np.uint16]:
     return joints.astype(np.uint16)
 
 
-def _offers(state: Any) -> list[str]:
+def _offers(state: State) -> list[str]:
     step = state.lesson_step
     return [] if step is None else list(step.offers.values())

@@ -10,22 +10,21 @@ from cutcell_viewers.character import body, bones, to_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.weights_scene import weight_colors
 
-from ...derive.memo import Memo
 from ...document.framing import bounds_of
 from ...document.state import State
 from ...looks.character import plain
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Pairs."""
     pair = state.chosen_pair
     if pair is None:
-        return plain(state, memo)
+        return plain(state)
     audit = state.opened.audit
     captions = tuple(map(shown_name, (audit.names[pair.a], audit.others[pair.b])))
     if state.beside is None:
         return Description(views=captions)
-    made = memo("pair", (state.beside, state.rig), lambda: side_by_side(state))
+    made = state.memo("pair", (state.beside, state.rig), lambda: side_by_side(state))
     rigs = {
         name: replace(actor, visible=state.skeleton) if actor.overlay else actor
         for name, actor in made.items()

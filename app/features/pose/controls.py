@@ -12,7 +12,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...editing.brush.controls import BRUSH
 from ...editing.select.controls import SELECTION
-from ...looks.pose_controls import REST, play
+from ...looks.controls import REST
+from ...looks.pose import play
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from . import results as actions
@@ -29,7 +30,7 @@ WORST = 8
 WORST_TEXT = "Largest errors for 30° rotations (root mean square). Click to show."
 
 
-def _how_to_turn(state: Any) -> str:
+def _how_to_turn(state: State) -> str:
     if not ui.has_joint(state):
         return ""
     name = ui.joint_title(state.rig, state.joint)
@@ -52,7 +53,7 @@ def _angle(axis: int) -> Any:
     )  # fmt: skip
 
 
-def _motions(state: Any) -> list[str]:
+def _motions(state: State) -> list[str]:
     """Return the names of the clips, and of the swing, which is number -1."""
     clips = state.rig.clips if state.rig is not None else ()
     return [*(clip.name or f"clip {i}" for i, clip in enumerate(clips)), SWING]
@@ -63,7 +64,7 @@ def _choose_motion(session: Session, index: int) -> None:
     session.state.clip = index if index < len(clips) else -1
 
 
-def _colours(state: Any) -> dict[str, Any]:
+def _colours(state: State) -> dict[str, Any]:
     """Return the choices of colours, and the chosen one."""
     names = {"Weights": "weights", "Plain": "plain"}
     if state.rig is None or has_materials(state.rig):
@@ -73,7 +74,7 @@ def _colours(state: Any) -> dict[str, Any]:
 
 
 def notes_text(state: State) -> str:
-    """Return what could not be read of the materials that are seen, in sentences."""
+    """List the faults of the shown materials, in sentences."""
     if state.materials is None:
         return ""
     notes = state.materials.notes
@@ -155,7 +156,7 @@ CONTROLS = ui.column(
         "Compare with original weights",
         ui.choice("rival"),
         ui.switch("heat", margin=ui.GAP),
-        ui.caption(lambda s: error_text(s, error_of(s, s.memo))),
+        ui.caption(lambda s: error_text(s, error_of(s))),
         ui.caption(lambda s: WORST_TEXT if _worst(s) else "", margin=(6, 0, 2, 0)),
         ui.Control(
             Rows,

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig import Clip
-from cutcell_viewers.character import body, pose_in_scene
+from cutcell_viewers.character import body
 from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import (
     error_legend,
@@ -19,33 +18,27 @@ from cutcell_viewers.materials import Textures
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.skin import Gap, Skin
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...looks.character import character
 from ...looks.pose import pose_of
 from ...looks.selection import isolated, selection_marks
 from ...looks.weights import weights_look, weights_seen
-from ...messages.sent import Motion, Rings
 
 GHOST_OPACITY = 0.38
-MAX_NUMBERS = 2**22
-"""Largest motion that is sent to the browser (16 MB); longer ones are sent with fewer frames."""
-TOGETHER = 64
-"""Number of frames that are sampled at a time."""
 VIEWS = ("cutcell", "Weights from the file")
 
 
-def scene(state: State, memo: Memo) -> Description:
+def scene(state: State) -> Description:
     """Return the scene of the panel Pose."""
     placed = pose_of(state)
     textures = textures_of(state)
-    style, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
+    style, legend, coloured = _colours(state, weights_seen(state), "weights")
     if state.heat and has_rival(state):
-        style, legend = _error_colours(state, memo, error_limits_of(state, placed, memo))
+        style, legend = _error_colours(state, error_limits_of(state, placed))
         coloured = False
-    actors = character(state, memo, bones_coloured=coloured, **style)
-    actors = isolated(state, memo, actors)
-    actors |= selection_marks(state, memo, actors["body"])
+    actors = character(state, bones_coloured=coloured, **style)
+    actors = isolated(state, actors)
+    actors |= selection_marks(state, actors["body"])
     if textures is not None:
         actors |= _attachments_in_materials(actors, textures)
     description = Description(
@@ -53,22 +46,22 @@ def scene(state: State, memo: Memo) -> Description:
     )
     if state.rival == "alone" or not has_rival(state):
         return description
-    reference = rival_of(state, memo)
+    reference = rival_of(state)
     if state.rival == "ghost":
         reference = replace(reference, color=GHOST, opacity=GHOST_OPACITY, behind=True)
         return replace(description, actors={**actors, "rival": reference})
     actors["body"] = replace(actors["body"], view=0)
-    file_style = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
+    file_style = {} if state.heat else _colours(state, state.rig.weights, "file weights")[0]
     reference = replace(reference, view=1, **file_style)
     return replace(description, actors={**actors, "rival": reference}, views=VIEWS)
 
 
-def _error_colours(
-    state: State, memo: Memo, limits: tuple[float, float]
-) -> tuple[dict[str, Any], Legend]:
+def _error_colours(state: State, limits: tuple[float, float]) -> tuple[dict[str, Any], Legend]:
     rig, count = state.rig, len(state.rig.mesh.vertices)
-    skin = memo("apart", (rig,), lambda: Apart(Skin.of_weights(rig.weights), millimetres(rig)))
-    style = memo("error look", (rig, limits[1]), lambda: error_look(count, skin, limits))
+    skin = state.memo(
+        "apart", (rig,), lambda: Apart(Skin.of_weights(rig.weights), millimetres(rig))
+    )
+    style = state.memo("error look", (rig, limits[1]), lambda: error_look(count, skin, limits))
     return style, error_legend(limits)
 
 
@@ -83,16 +76,14 @@ def _attachments_in_materials(actors: dict[str, Actor], textures: Textures) -> d
     return {name: replace(actors[name], materials=one) for name, one in colors.items()}
 
 
-def _colours(
-    state: State, memo: Memo, weights: Any, name: str
-) -> tuple[dict[str, Any], Legend | None, bool]:
+def _colours(state: State, weights: Any, name: str) -> tuple[dict[str, Any], Legend | None, bool]:
     """Return the colours of a moving body by its materials, once these are read, or by weights."""
     textures = textures_of(state)
     if textures is not None:
         return {"materials": textures.body}, None, False
     if state.pose_colors == "plain" or weights is None:
         return {}, None, False
-    return weights_look(state, memo, weights, name)
+    return weights_look(state, weights, name)
 
 
 def has_rival(state: State) -> bool:
@@ -100,19 +91,19 @@ def has_rival(state: State) -> bool:
     return state.binding is not None and state.rig.weights is not None
 
 
-def rival_of(state: State, memo: Memo) -> Actor:
+def rival_of(state: State) -> Actor:
     """Return the body as the file's own weights move it."""
-    return memo("rival", (state.rig,), lambda: body(state.rig, state.rig.weights))
+    return state.memo("rival", (state.rig,), lambda: body(state.rig, state.rig.weights))
 
 
-def gap_of(state: State, memo: Memo) -> Gap:
+def gap_of(state: State) -> Gap:
     """Return the function of the distance between the two weightings in a pose."""
     rig, weights, blending = state.rig, state.binding.weights, state.blending
     inputs = (rig, state.binding, blending)
-    return memo("gap", inputs, lambda: gap_between(rig, weights, rig.weights, blending))
+    return state.memo("gap", inputs, lambda: gap_between(rig, weights, rig.weights, blending))
 
 
-def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
+def error_of(state: State) -> tuple[float, float] | None:
     """Return the root mean square and greatest error in mm of the pose or motion, if known."""
     if not has_rival(state):
         return None
@@ -122,47 +113,19 @@ def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
     placed = pose_of(state)
     if placed is None:
         return (0.0, 0.0)
-    lengths = lengths_of(state, placed, memo)
+    lengths = lengths_of(state, placed)
     return float(np.sqrt(np.square(lengths).mean())), float(lengths.max())
 
 
-def lengths_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
+def lengths_of(state: State, placed: np.ndarray) -> np.ndarray:
     """Return the error of each vertex in the pose of the sliders, in mm."""
     inputs = (state.binding, state.turns, state.blending)
-    return memo("error", inputs, lambda: gap_of(state, memo).lengths(placed))
+    return state.memo("error", inputs, lambda: gap_of(state).lengths(placed))
 
 
-def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tuple[float, float]:
+def error_limits_of(state: State, placed: np.ndarray | None) -> tuple[float, float]:
     """Return the range of the error's colours, with round numbers."""
     if state.moving:
         error = state.motion_error
         return error_limits([0.0 if error is None else error[2]])
-    return error_limits([0.0] if placed is None else lengths_of(state, placed, memo))
-
-
-def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
-    """Return a motion as a message for the view, with a limited number of numbers."""
-    if clip is None or not len(times := clip.times):
-        return None
-    most = max(limit // max(16 * clip.joints, 1), 2)
-    if len(times) > most:
-        times = np.linspace(0, clip.duration, most)
-    matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)
-    for first in range(0, len(times), TOGETHER):
-        frames = slice(first, first + TOGETHER)
-        matrices[frames] = pose_in_scene(state.rig, clip.sample(times[frames]))
-    return {"times": times, "matrices": matrices.ravel()}
-
-
-def gizmo_part(state: State) -> Rings | None:
-    """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
-    if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
-        return None
-    rig, joint = state.rig, state.joint
-    centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]
-    return {
-        "joint": joint,
-        "joints": len(rig.skeleton.joints),
-        "centre": centre.tolist(),
-        "below": np.flatnonzero(rig.skeleton.subtree[joint]).astype(np.int32),
-    }
+    return error_limits([0.0] if placed is None else lengths_of(state, placed))

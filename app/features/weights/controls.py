@@ -28,23 +28,23 @@ DIFFERENCE = {
 }
 
 
-def _colours(state: Any) -> dict[str, Any]:
+def _colours(state: State) -> dict[str, Any]:
     """Return the choices of colours, and the chosen one."""
     options = {**SHOWN, **(DIFFERENCE if ui.has_weights(state) else {})}
     field = state.weights_shown
     return {"options": options, "value": field if field in options.values() else "mix"}
 
 
-def _is_difference(state: Any) -> bool:
+def _is_difference(state: State) -> bool:
     return state.weights_shown in DIFFERENCE.values()
 
 
-def _is_signed(state: Any) -> bool:
+def _is_signed(state: State) -> bool:
     return bool(state.weights_shown == "bone_difference")
 
 
 def summary(state: State) -> str:
-    """Return what there is to say of the weights in a line."""
+    """Summarize the weights in a line."""
     if state.binding is None:
         return ""
     weights = state.binding.weights

@@ -1,4 +1,4 @@
-// Written by app/messages/typescript.py.
+// Written by app/server/protocol/typescript.py.
 type Vector = number[]
 type Announced = {name: string; size: number}  // A file that follows.
 type Camera = {position: Vector; focal_point: Vector}  // Where one looks from, and at what.
@@ -27,7 +27,7 @@ type Picture = {count: number; picture: ArrayBuffer}  // A picture of the view, 
 type UploadAnswer = {ok?: boolean; message?: string}  // What becomes of an upload.
 type Copied = {text: string; what: string}  // A text for the clipboard, and its kind.
 type Download = {name: string; content: ArrayBuffer}  // A file to save.
-type ToBrowser = {id?: number; actors?: Record<string, Part>; remove?: string[]; cut?: Cut | null; front?: number | null; images?: Images | null; legend?: Legend | null; views?: string[]; pose?: Float32Array | null; blending?: 'linear' | 'dual'; lights?: [Vector, number][]; theme?: Theme; dark?: boolean; camera?: Cameras; home?: boolean; bones?: Bones | null; gizmo?: Rings | null; mover?: Knob | null; handles?: Box | null; brush?: Brush | null; lasso?: Through | null; clip?: Motion | null; playing?: boolean; animation?: Wave | null; address?: string; link?: string; able?: boolean[]; rendered?: boolean; frame?: Picture; painted?: Painted; idle?: number; upload?: UploadAnswer; copy?: Copied; download?: Download}  // A message to the view, of any of these parts.
+type ToBrowser = {id?: number; actors?: Record<string, Part>; remove?: string[]; cut?: Cut | null; front?: number | null; images?: Images | null; legend?: Legend | null; views?: string[]; pose?: Float32Array | null; blending?: 'linear' | 'dual'; lights?: [Vector, number][]; theme?: Theme; dark?: boolean; camera?: Cameras; home?: boolean; bones?: Bones | null; gizmo?: Rings | null; mover?: Knob | null; points?: Record<string, Vector> | null; handles?: Box | null; brush?: Brush | null; lasso?: Through | null; clip?: Motion | null; playing?: boolean; animation?: Wave | null; address?: string; link?: string; able?: boolean[]; rendered?: boolean; frame?: Picture; painted?: Painted; idle?: number; upload?: UploadAnswer; copy?: Copied; download?: Download}  // A message to the view, of any of these parts.
 type FromBrowser =
   | {type: 'ready'; width?: number; dark?: string | null; calm?: boolean; pictures?: boolean}  // The view is there.
   | {type: 'camera-moved'; position: Vector; focal_point: Vector; aspect?: number | null; height?: number | null; home?: boolean}  // The view rests.
@@ -38,8 +38,9 @@ type FromBrowser =
   | {type: 'pick-strongest'; vertex: number}  // The strongest joint at a vertex is to be chosen.
   | {type: 'turn'; joint: number; axis: number; degrees: number; begin?: boolean}  // A ring is dragged.
   | {type: 'move-joint'; joint: number; position: Vector; done?: boolean}  // A joint is dragged in the scene.
+  | {type: 'move-point'; name: string; position: Vector; done?: boolean}  // A point that a feature declares is dragged in the scene.
   | {type: 'move-cut'; origin: Vector; normal: Vector}  // The cutting plane is dragged.
-  | {type: 'paint'; points?: number[] | null; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
+  | {type: 'paint'; points?: number[]; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
   | {type: 'lasso'; vertices: number[]; mode: string}  // A line was drawn around vertices.
   | {type: 'halt-wave'; front: number}  // The wavefront is halted at a part of the greatest distance.
   | {type: 'play'; on: boolean}  // The motion is played or paused.

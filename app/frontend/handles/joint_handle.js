@@ -11,7 +11,7 @@ export class JointHandle extends DragHandle {
     this.partner = make("circle", "partner", this.svg, {r: 6})
     this.knob = make("g", "knob", this.svg)
     const reach = make("circle", "reach", this.knob, {r: 20})
-    make("title", "", reach).textContent = "Drag: move the joint"
+    make("title", "", reach).textContent = "Drag to move"
     for (const name of ["halo", "arrows"]) { make("path", name, this.knob, {d: CROSS}) }
     make("circle", "dot", this.knob, {r: 6})
     this.grip(reach)

@@ -12,6 +12,7 @@ import {eachFrame} from "../common/frames.js"
 import {Gizmo} from "../handles/gizmo.js"
 import {Insets} from "../camera/insets.js"
 import {JointHandle} from "../handles/joint_handle.js"
+import {PointHandles} from "../handles/point_handles.js"
 import {Orbit} from "../camera/orbit.js"
 import {Lasso} from "../handles/lasso.js"
 import {plain} from "../common/panel.js"
@@ -62,10 +63,9 @@ export class SceneView {
       moved: (cut) => { this.setCut(cut); this.changed() },
       tell: (message) => model.send_msg(message),
     })
-    this.mover = new JointHandle(overlay, this.renderer, {
-      moved: () => this.changed(),
-      tell: (message) => model.send_msg(message),
-    })
+    const hears = {moved: () => this.changed(), tell: (message) => model.send_msg(message)}
+    this.mover = new JointHandle(overlay, this.renderer, hears)
+    this.points = new PointHandles(overlay, this.renderer, hears)
     this.transport = new Transport(overlay, {
       play: (on) => model.send_msg({type: "play", on}),
       seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
@@ -107,7 +107,7 @@ export class SceneView {
       renderer.haze = between(message.theme.top, message.theme.bottom)
     }
     if ("dark" in message) { remember("cutcell dark", message.dark ? "1" : "0") }
-    if ("legend" in message) { this.overlay.showLegend(message.legend) }
+    if (message.legend !== undefined) { this.overlay.showLegend(message.legend) }
     if ("rendered" in message) {
       this.rendered.turn(message.rendered)
       this.surroundings.keys.press("rendered", message.rendered)
@@ -121,6 +121,7 @@ export class SceneView {
     if ("lasso" in message) { this.lasso.show(message.lasso) }
     this.orbit.painting = Boolean(this.brush.part || this.lasso.part)
     if ("mover" in message) { this.mover.show(message.mover) }
+    if ("points" in message) { this.points.show(message.points) }
     if ("handles" in message) { this.handles.show(message.handles) }
     if (message.views) {
       this.views = message.views
@@ -129,8 +130,8 @@ export class SceneView {
     if ("images" in message) { renderer.images.set(message.images) }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of Object.entries(message.actors ?? {})) {
-      if (!renderer.actors.has(name)) { renderer.actors.set(name, new Actor(renderer)) }
-      const actor = renderer.actors.get(name)
+      const actor = renderer.actors.get(name) ?? new Actor(renderer)
+      renderer.actors.set(name, actor)
       actor.update(part, this.cut)
       if ("animation" in part) { actor.setFront(this.animation.front) }
     }
@@ -138,7 +139,7 @@ export class SceneView {
       const {start, end, joint, names} = message.bones
       this.bones = {start: [...start], end: [...end], joint: [...joint], names}
     }
-    if ("gizmo" in message) { this.gizmo.show(message.gizmo) }
+    if (message.gizmo !== undefined) { this.gizmo.show(message.gizmo) }
     // While a ring is dragged the hand is ahead of the server.
     if ("pose" in message && !this.gizmo.held) { this.pose = message.pose && plain(message.pose) }
     if ("blending" in message) { this.blending = message.blending }
@@ -222,6 +223,7 @@ export class SceneView {
     this.gizmo.draw()
     this.handles.draw()
     this.mover.draw()
+    this.points.draw()
     this.brush.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
@@ -264,9 +266,9 @@ export class SceneView {
     this.stop()
     this.forgetRatio()
     this.surroundings?.remove()
-    const {addressBar, animation, gizmo, handles, insets, mover, orbit, rendered, renderer} = this
-    const parts = [addressBar, animation, gizmo, handles, insets, mover, orbit, rendered, renderer]
-    for (const part of parts) { part.remove() }
+    const {addressBar, animation, gizmo, handles, insets, mover, points} = this
+    const parts = [addressBar, animation, gizmo, handles, insets, mover, points]
+    for (const part of [...parts, this.orbit, this.rendered, this.renderer]) { part.remove() }
   }
 }
 

@@ -21,9 +21,9 @@ from cutcell_viewers.pose_scene import clip_in_scene
 from cutcell_viewers.process import draw_isolated
 
 from ...derive.jobs import COMPUTING, DRAWING, Slots
-from ...derive.memo import Memo
 from ...derive.processes import in_process
 from ...document.session import Session
+from ...document.state import State
 from ...features.scenes import following, resolve
 from ...files.receive import safe_name
 from ...files.table_export import save_graph, save_numbers, settings_of
@@ -44,8 +44,7 @@ ENDED = "writing it came to a sudden end; there may be too little memory"
 class Seen:
     """Snapshot of the page, for a thread that draws it later."""
 
-    state: Any
-    memo: Memo
+    state: State
     camera: Camera | None
     aspect: float
     height: float
@@ -56,11 +55,11 @@ class Seen:
         """Take a snapshot of a session's page."""
         view = session.view
         seen = view.camera, view.aspect, view.page_height, view.time
-        return cls(session.state.snapshot(), session.memo, *seen)
+        return cls(session.state.snapshot(), *seen)
 
     def posed(self) -> Description:
         """Return the scene, in the pose that a motion has come to."""
-        description, clip = resolve(self.state, self.memo), clip_of(self.state)
+        description, clip = resolve(self.state), clip_of(self.state)
         if clip is None or not len(clip.times):
             return description
         return replace(description, pose=pose_in_scene(self.state.rig, pose_at(clip, self.time)))
@@ -107,7 +106,7 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
 
     def order(seen: Seen, progress: Progress) -> Order:
         motion = clip_in_scene(seen.state.rig, chosen_clip(seen.state))
-        return replace(seen.order(FILM_PIXELS, following(seen.state, seen.memo)), motion=motion)
+        return replace(seen.order(FILM_PIXELS, following(seen.state)), motion=motion)
 
     _draw(session, ending, done, order)
 
@@ -121,7 +120,7 @@ def export_sweep(session: Session, ending: str, done: Done) -> None:
         return
 
     def order(seen: Seen, progress: Progress) -> Order:
-        scenes = sweep_scenes(seen.state, name, rate, seen.memo, progress)
+        scenes = sweep_scenes(seen.state, name, rate, progress)
         return replace(seen.order(FILM_PIXELS, scenes[-1]), scenes=scenes)
 
     _draw(session, ending, done, order)

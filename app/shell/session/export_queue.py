@@ -3,19 +3,21 @@
 No export stops other work, and no other work stops an export.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 
-from ...document.method import GRAPH, WEIGHTS
+from ...derive.engine import WIDGETS
 from ...document.session import Session
 from ...editing.binding.recovery import is_current, is_pending
 
 
 def watch(session: Session) -> None:
     """Begin the next export when weights arrive, and when a choice is taken back."""
-    session.state.param.watch(
-        lambda *events: session.work.later(lambda: proceed(session)),
-        ["binding", "built_graph", "busy", "edits", *GRAPH, *WEIGHTS],
-    )
+
+    def changed(names: Set[str], is_reset: bool) -> None:
+        if session.exports:
+            session.work.later(lambda: proceed(session))
+
+    session.engine.follow(changed, WIDGETS)
 
 
 def when_ready(session: Session, export: Callable[[], None]) -> None:

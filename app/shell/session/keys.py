@@ -1,5 +1,9 @@
 """Actions of the keys and of the buttons over the canvas."""
 
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
 import numpy as np
 from param.parameterized import batch_call_watchers
 
@@ -11,12 +15,9 @@ from ...document.framing import camera_on_bone, first_joint
 from ...document.loading import travel
 from ...document.look import set_camera
 from ...document.session import Session
-from ...document.state import State
-from ...editing.brush import strokes as brush
-from ...editing.select import actions as selecting
-from ...features.learn.writing import save_view
-from ...features.pairs import results as pairs
-from ...messages.received import Act
+from ...features import FEATURES
+from ...looks.pose import play
+from ...server.protocol.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
@@ -28,35 +29,15 @@ def watch(session: Session) -> None:
 
 
 def act(session: Session, name: str) -> None:
-    """Do what a key or a button says."""
-    state = session.state
-    does = {
-        "undo": lambda: travel(session, -1),
-        "redo": lambda: travel(session, 1),
-        "reset": lambda: reset(session),
-        "step": lambda: save_view(session),
-        "rendered": lambda: state.param.update(rendered=not state.rendered),
-        "play": lambda: play(state),
-        "next": lambda: step(session, 1),
-        "previous": lambda: step(session, -1),
-        "frame": lambda: frame(session),
-        "parent": lambda: to_parent(state),
-        "child": lambda: to_child(state),
-        "brush": lambda: brush.turn_over(session),
-        "brush away": lambda: brush.put_down(session),
-        "brush larger": lambda: brush.resize(session, 1),
-        "brush smaller": lambda: brush.resize(session, -1),
-        "brush stronger": lambda: brush.strengthen(session, 1),
-        "brush weaker": lambda: brush.strengthen(session, -1),
-    }.get(name)
-    if does is not None and state.rig is not None:
-        does()
-    elif state.rig is not None:
-        selecting.act(session, name)
+    """Run the action of a key or a button."""
+    of_panel = FEATURES[session.state.panel].keys
+    action = of_panel.get(name) or KEYS.get(name)
+    if action is not None and session.state.rig is not None:
+        action(session)
 
 
 def reset(session: Session) -> None:
-    """Choose what one begins with, at rest, on the panel that is open."""
+    """Reset all choices to their defaults, at rest, on the open panel."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     with batch_call_watchers(state):
@@ -65,23 +46,10 @@ def reset(session: Session) -> None:
     session.view.send(home=True)
 
 
-def play(state: State) -> None:
-    """Play the motion, or halt it; on the panel where things move."""
-    if state.bare:
-        return
-    if not state.moving or not state.open_panel.poses:
-        panel = state.panel if state.panel == "compare" else "pose"
-        state.param.update(panel=panel, moving=True, playing=True)
-    else:
-        state.playing = not state.playing
-
-
 def step(session: Session, count: int) -> None:
-    """Choose the next joint of the list, or the one before; of an audit, the next pair."""
+    """Choose the next joint of the list, or the one before."""
     state = session.state
-    if state.panel == "pairs":
-        pairs.step(session, count)
-    elif not state.bare:
+    if not state.bare:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
 
@@ -93,15 +61,38 @@ def frame(session: Session) -> None:
         set_camera(session, camera_on_bone(state, NEAR, session.view.aspect, direction))
 
 
-def to_parent(state: State) -> None:
+def to_parent(session: Session) -> None:
     """Choose the parent of the chosen joint."""
+    state = session.state
     above = -1 if state.bare else int(state.rig.skeleton.parents[state.joint])
     if above >= 0:
         state.joint = above
 
 
-def to_child(state: State) -> None:
+def to_child(session: Session) -> None:
     """Choose the first child of the chosen joint."""
+    state = session.state
     below = [] if state.bare else state.rig.skeleton.children[state.joint]
     if len(below):
         state.joint = int(below[0])
+
+
+def toggle_rendered(session: Session) -> None:
+    """Let the server draw the view, or the browser again."""
+    session.state.rendered = not session.state.rendered
+
+
+KEYS: dict[str, Callable[[Session], Any]] = {
+    **{name: act for feature in FEATURES.values() for name, act in feature.keys.items()},
+    "undo": partial(travel, by=-1),
+    "redo": partial(travel, by=1),
+    "reset": reset,
+    "rendered": toggle_rendered,
+    "play": play,
+    "next": partial(step, count=1),
+    "previous": partial(step, count=-1),
+    "frame": frame,
+    "parent": to_parent,
+    "child": to_child,
+}
+"""By their names in `frontend/page/keys.js`."""

@@ -3,7 +3,6 @@
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.description import Description
 
-from ...derive.memo import Memo
 from ...document.state import State
 from ...features.scenes import resolve
 from ...looks.character import cut_of, has_field
@@ -29,12 +28,12 @@ def has_cut(state: State) -> bool:
 
 
 def sweep_scenes(
-    state: State, name: str, rate: int, memo: Memo | None = None, progress: Progress = silent
+    state: State, name: str, rate: int, progress: Progress = silent
 ) -> tuple[Description, ...]:
     """Return the scenes of a sweep of `SWEEPS`, one for each frame; the rate is per second."""
-    memo, count, moving = memo or Memo(), round(SECONDS * rate), round((SECONDS - REST) * rate)
+    count, moving = round(SECONDS * rate), round((SECONDS - REST) * rate)
     scenes = []
     for k in range(moving + 1):
         progress("describing the frames", k / moving)
-        scenes.append(resolve(state.changed(**{SWEEPS[name]: k / moving}), memo))
+        scenes.append(resolve(state.changed(**{SWEEPS[name]: k / moving})))
     return tuple(scenes + scenes[-1:] * (count - len(scenes)))

@@ -14,34 +14,39 @@ from ...derive.reading import Recorded
 from ...document.framing import bones_part, theme_of, theme_part
 from ...document.session import Session
 from ...document.state import State
-from ...editing.brush.strokes import brush_part
-from ...editing.correct.moving import handle_part
-from ...editing.select.selections import lasso_part
-from ...features.distance.results import wave_part
-from ...features.pose.results import is_playing, motion_part
-from ...features.pose.scene import gizmo_part
+from ...features import FEATURES
 from ...features.scenes import resolve
-from ...looks.cut import plane_part
+from ...server.protocol.received import MovePoint
 
 SCENE = "scene"
+HANDLES = {name: one for feature in FEATURES.values() for name, one in feature.handles.items()}
+
+
+def _points(state: State) -> dict[str, list[float]] | None:
+    """Return the points that can be dragged, by their names; None for none."""
+    places = {name: one.at(state) for name, one in HANDLES.items()}
+    return {n: [float(x) for x in at] for n, at in places.items() if at is not None} or None
+
+
 PARTS: dict[str, Callable[[State], Any]] = {
-    "handles": plane_part,
     "bones": bones_part,
-    "mover": handle_part,
-    "brush": brush_part,
-    "lasso": lasso_part,
-    "animation": wave_part,
-    "clip": motion_part,
-    "playing": is_playing,
-    "gizmo": gizmo_part,
+    "points": _points,
     "theme": lambda state: theme_part(theme_of(state)),
     "rendered": lambda state: state.rendered,
 }
 """By the name in messages: a function that returns the part, or None for none."""
+for one in FEATURES.values():
+    PARTS |= one.parts
 
 
 def watch(session: Session) -> None:
-    """Show the state from now on."""
+    """Show the state from now on, and move what is dragged."""
+
+    def move(message: MovePoint) -> None:
+        if message.name in HANDLES:
+            HANDLES[message.name].move(session, message.position, message.done)
+
+    session.view.listen(MovePoint, move)
     Shown(session).update()
 
 
@@ -55,7 +60,7 @@ class Shown:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        makers = {SCENE: lambda state: resolve(state, session.memo), **PARTS}
+        makers = {SCENE: lambda state: resolve(state), **PARTS}
         self._cells = {name: Recorded(partial(_made, make)) for name, make in makers.items()}
         self._meanwhile: set[str] = set()
         session.engine.follow(self._changed, VIEW)

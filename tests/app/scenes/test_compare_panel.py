@@ -9,7 +9,6 @@ import cutcell
 import cutcell_lab
 from cutcell.runtime.progress import silent
 from cutcell_app.derive.engine import Engine
-from cutcell_app.derive.memo import Memo
 from cutcell_app.derive.work import Work
 from cutcell_app.document.side_by_side import NOW, offered
 from cutcell_app.features.compare.controls import FIELD, about, rows_of
@@ -186,10 +185,9 @@ def test_the_table_tells_what_is_known(state, rig):
 
 
 def test_a_memo_keeps_what_did_not_change(state):
-    memo = Memo()
-    before = resolve(state, memo)
+    before = resolve(state)
     state.turns = {1: (0, 10, 0)}
-    after = resolve(state, memo)
+    after = resolve(state)
     for name, actor in before.actors.items():
         assert after.actors[name].skin is actor.skin, name
         assert after.actors[name].scalars is actor.scalars, name

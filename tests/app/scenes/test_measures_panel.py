@@ -5,7 +5,6 @@ import pytest
 
 import cutcell
 from cutcell_app.derive.derived import ComputedWhenRead
-from cutcell_app.derive.memo import Memo
 from cutcell_app.document import loading
 from cutcell_app.document.address import from_query, to_query
 from cutcell_app.features.distance.measures import WAITING
@@ -78,7 +77,7 @@ def test_a_distance_is_one_number_in_caption_legend_and_card(rig, binding):
     state.beside_any = False
     resolve(ComputedWhenRead(state, RESULTS))
     (text,) = (text for _, text in resolve(state).legend.swatches if text.startswith("shortest"))
-    facts = vertex_facts(state, Memo())
+    facts = vertex_facts(state)
     (row,) = (one for one in facts["distances"] if one["joint"] == 2)
     exported = binding.distances.joint[2, 0] * longest_side(rig)
     for one in (caption, text, f"{row['distance']:.3g} {facts['unit']}"):

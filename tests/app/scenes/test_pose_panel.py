@@ -7,12 +7,11 @@ from hypothesis import strategies as st
 
 import cutcell
 from cutcell.pose import axis_rotation
-from cutcell_app.derive.memo import Memo
 from cutcell_app.features.pose.errors import scene_error
-from cutcell_app.features.pose.scene import VIEWS, error_of, gizmo_part
+from cutcell_app.features.pose.scene import VIEWS, error_of
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
-from cutcell_app.looks.pose import angles_of, rotation_of
+from cutcell_app.looks.pose import angles_of, gizmo_part, rotation_of
 from cutcell_app.widgets.changes import changes
 from cutcell_lab.metrics import deformation_error
 from cutcell_viewers.character import pose_in_scene
@@ -72,13 +71,12 @@ def test_without_the_files_weights_there_is_nothing_to_compare(rig, binding):
 
 
 def test_the_error_is_told_and_coloured(state, rig, binding):
-    memo = Memo()
     state.heat = True
-    assert error_of(state, memo) == (0.0, 0.0)
+    assert error_of(state) == (0.0, 0.0)
     state.turns = {1: (0, 40, 0)}
-    scene = resolve(state, memo)
+    scene = resolve(state)
     lengths = gap_between(rig, binding.weights, rig.weights).lengths(scene.pose)
-    rms, greatest = error_of(state, memo)
+    rms, greatest = error_of(state)
     assert rms == pytest.approx(np.sqrt(np.square(lengths).mean()))
     assert greatest == pytest.approx(float(lengths.max()))
     body = scene.actors["body"]
@@ -88,12 +86,11 @@ def test_the_error_is_told_and_coloured(state, rig, binding):
 
 
 def test_dual_quaternions_move_the_same_weights_and_the_error_with_them(state, rig, binding):
-    memo = Memo()
     state.param.update(heat=True, turns={1: (0, 120, 0)})
-    assert "blending" not in changes(Description(), resolve(state, memo), set())
-    linear = resolve(state, memo), error_of(state, memo)
+    assert "blending" not in changes(Description(), resolve(state), set())
+    linear = resolve(state), error_of(state)
     state.blending = "dual"
-    scene, error = resolve(state, memo), error_of(state, memo)
+    scene, error = resolve(state), error_of(state)
     message = changes(linear[0], scene, set(scene.actors))
     assert message["blending"] == "dual"
     assert "pose" not in message
@@ -114,18 +111,17 @@ def test_dual_quaternions_move_the_same_weights_and_the_error_with_them(state, r
 
 def test_the_error_of_a_motion_is_known_once_it_was_measured(state, binding):
     state.param.update(moving=True, clip=0, heat=True)
-    assert error_of(state, Memo()) is None
+    assert error_of(state) is None
     state.motion_error = (1.5, 40.0, 28.0)
-    assert error_of(state, Memo()) == (1.5, 40.0)
+    assert error_of(state) == (1.5, 40.0)
     assert resolve(state).actors["body"].limits == (0.0, 30.0)
 
 
 def test_a_small_turn_streams_nothing_but_the_pose(state):
-    memo = Memo()
     state.param.update(heat=True, rival="beside", turns={1: (0, 40, 0)})
-    before = resolve(state, memo)
+    before = resolve(state)
     state.turns = {1: (0, 40.5, 0)}
-    after = resolve(state, memo)
+    after = resolve(state)
     for name, actor in before.actors.items():
         for field in ("points", "scalars", "skin", "apart"):
             assert getattr(after.actors[name], field) is getattr(actor, field), (name, field)

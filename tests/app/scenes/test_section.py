@@ -7,7 +7,6 @@ import pytest
 
 import cutcell
 from cutcell.diagnosis.finding import Finding, Pose
-from cutcell_app.derive.memo import Memo
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
 from cutcell_viewers.finding_scene import camera_on, camera_on_marks
@@ -26,23 +25,22 @@ def state():
 
 
 def test_the_face_shows_what_is_chosen(state):
-    memo = Memo()
     state.param.update(panel="distance", cut_axis="free", cut_face="field")
-    scene = resolve(state, memo)
+    scene = resolve(state)
     face = scene.actors["inside"]
     away = (face.points - np.array(scene.cut.origin)) @ np.array(scene.cut.normal)
     assert np.abs(away).max() < 1e-5
     assert scene.legend.title.startswith("Distance from")
-    assert resolve(state, memo).actors["inside"].points is face.points
+    assert resolve(state).actors["inside"].points is face.points
     state.cut_face = "winding"
-    scene = resolve(state, memo)
+    scene = resolve(state)
     assert scene.legend.title == "Winding number"
     assert scene.actors["body"].scalars is None
     state.param.update(panel="graph", graph_resolution=0, cut_axis="y", graph_face="open")
-    assert "inside" not in resolve(state, memo).actors
+    assert "inside" not in resolve(state).actors
     for face, title in (("field", "Distance from"), ("winding", "Winding number")):
         state.graph_face = face
-        scene = resolve(state, memo)
+        scene = resolve(state)
         assert scene.actors["inside"].opacity < 1
         assert scene.legend.title.startswith(title)
         assert any("interior" in text for _, text in scene.legend.swatches)

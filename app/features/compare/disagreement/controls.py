@@ -22,7 +22,7 @@ def _line(text: str, **style: Any) -> Any:
     return ui.caption(text, margin=(0, 0, 4, 6), sx={**ui.QUIET, **style})
 
 
-def _summary(state: Any) -> str:
+def _summary(state: State) -> str:
     if state.binding is None:
         return ""
     if state.disagreement is None:
@@ -38,7 +38,7 @@ def _summary(state: Any) -> str:
     )
 
 
-def _titles(state: Any, without: str = "") -> dict[str, str]:
+def _titles(state: State, without: str = "") -> dict[str, str]:
     return {title_of(name): name for name in state.methods if name != without}
 
 
@@ -56,7 +56,7 @@ def _select(place: int, label: str) -> Any:
     )
 
 
-def _regions(state: Any) -> list[Any]:
+def _regions(state: State) -> list[Any]:
     """Return a button and a line for each region."""
     if state.disagreement is None:
         return []
@@ -82,7 +82,7 @@ def _entry(rig: Rig, region: Region, part: float) -> Any:
     )
 
 
-def _place(state: Any, key: str) -> list[Any]:
+def _place(state: State, key: str) -> list[Any]:
     """Return the details of a region while it is the chosen one."""
     if state.region != key:
         return []

@@ -5,6 +5,7 @@ from functools import partial
 from typing import Any
 
 from ....document.session import Session
+from ....document.state import State
 from ....looks.measures import CONVERGED
 from ....widgets import controls as ui
 from ....widgets.curves import Curves
@@ -31,16 +32,16 @@ NUMBERS = ("resolution", "winding_threshold", "alpha", "max_influences", "thresh
 """Options whose values are places on an axis."""
 
 
-def _of_weights(state: Any) -> bool:
+def _of_weights(state: State) -> bool:
     return bool(state.sweep_of == "weights")
 
 
-def _runs(state: Any) -> bool:
+def _runs(state: State) -> bool:
     return bool(state.sweeping or state.measuring_errors)
 
 
-def about(state: Any) -> str:
-    """Return what the numbers are measured against."""
+def about(state: State) -> str:
+    """Name the reference of the numbers."""
     if not _of_weights(state):
         text = f"The bone's distances against any angle at R = {CONVERGED}."
         return text if not ui.weightless(state) else "This bone has no distances."
@@ -50,7 +51,7 @@ def about(state: Any) -> str:
     return f"Errors against the default of the option: the file has no weights.{layers}"
 
 
-def table(state: Any) -> dict[str, Any]:
+def table(state: State) -> dict[str, Any]:
     """Return columns and rows of the table, as `methods.js` takes them."""
     is_weights = _of_weights(state)
     fields = FIELDS if is_weights else DISTANCE_FIELDS
@@ -58,7 +59,7 @@ def table(state: Any) -> dict[str, Any]:
     return {"rows": rows, "columns": COLUMNS if is_weights else DISTANCE_COLUMNS}
 
 
-def _row(state: Any, one: Setting, fields: Sequence[str]) -> dict[str, Any]:
+def _row(state: State, one: Setting, fields: Sequence[str]) -> dict[str, Any]:
     is_running = ("swept", one.id) in state.computing
     note = one.note or ("Computing" if is_running else "")
     return {
@@ -83,7 +84,7 @@ def _tick(session: Session, row: tuple[str, bool]) -> None:
     _choose(session, row[0])
 
 
-def plots(state: Any) -> list[dict[str, Any]]:
+def plots(state: State) -> list[dict[str, Any]]:
     """Return the plots of what is measured so far."""
     settings = [one for one in settings_of(state) if one.values]
     if not settings:
@@ -99,11 +100,11 @@ def plots(state: Any) -> list[dict[str, Any]]:
     return [draw(state.sweep_measure, title, x=x)]
 
 
-def _is_empty(state: Any) -> bool:
+def _is_empty(state: State) -> bool:
     return not any(one.values or one.note for one in settings_of(state))
 
 
-def _is_complete(state: Any) -> bool:
+def _is_complete(state: State) -> bool:
     """Return whether there is nothing to compute."""
     if state.binding is None:
         return True

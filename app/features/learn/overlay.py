@@ -6,7 +6,8 @@ from typing import Any
 import param
 
 from ...document.session import Session
-from ...messages.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
+from ...document.state import State
+from ...server.protocol.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .lesson import Lesson
@@ -27,7 +28,7 @@ class LessonCard(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a person does with the card."""
+        """Run the action of a message of the card."""
         session = self._session
         match message:
             case ShowStep(step):
@@ -50,7 +51,7 @@ class LessonNotes(Widget):
     _esm = script("lesson/notes")
 
 
-def lesson_card(session: Session) -> LessonCard:
+def overlay(session: Session) -> LessonCard:
     """Return the card of a session's lesson."""
     row = Control(
         partial(LessonCard, session),
@@ -69,7 +70,7 @@ def steps_of(lesson: Lesson) -> list[dict[str, Any]]:
     return [step.to_json() for step in lesson.steps]
 
 
-def _now(state: Any) -> dict[str, Any]:
+def _now(state: State) -> dict[str, Any]:
     step = state.lesson_step
     has_plot = step is not None and step.plot and state.step in state.answers
     return {

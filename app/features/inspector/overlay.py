@@ -8,8 +8,9 @@ import param
 from ...document.address import from_query
 from ...document.look import pick, pick_node, pick_vertex
 from ...document.session import Session
+from ...document.state import State
 from ...editing.correct.commands import overrule
-from ...messages.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
+from ...server.protocol.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .facts import node_facts, vertex_facts
@@ -27,7 +28,7 @@ class Inspector(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a button of the card says."""
+        """Run the action of a button of the card."""
         session, state = self._session, self._session.state
         match message:
             case Close():
@@ -44,7 +45,7 @@ class Inspector(Widget):
                 pick(session, joint)
 
 
-def inspector(session: Session) -> Inspector:
+def overlay(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
     row = Control(
         partial(Inspector, session),
@@ -58,13 +59,13 @@ def inspector(session: Session) -> Inspector:
     return card
 
 
-def _facts(state: Any) -> dict[str, Any] | None:
+def _facts(state: State) -> dict[str, Any] | None:
     # Vertices that the lesson clicks are marked in the scene and need no card.
-    node = node_facts(state, state.memo)
-    return node or (None if points_out(state) else vertex_facts(state, state.memo))
+    node = node_facts(state)
+    return node or (None if points_out(state) else vertex_facts(state))
 
 
-def points_out(state: Any) -> bool:
+def points_out(state: State) -> bool:
     """Return whether the lesson chose the vertex, or waits for an answer.
 
     The card of a vertex would give the answer away.

@@ -9,7 +9,8 @@ from cutcell_viewers.palette import BONE_IDLE, GHOST, INTERIOR, MARK, SOURCE, co
 
 from ...document.framing import theme_of
 from ...document.session import Session
-from ...messages.received import Answer, Message
+from ...document.state import State
+from ...server.protocol.received import Answer, Message
 from ...widgets.modules import Widget, script
 from ...widgets.table import Control, draw
 
@@ -40,7 +41,7 @@ class FlatScene(Widget):
             self._session.state.acted = message.value
 
 
-def flat_colors(state: Any) -> dict[str, Any]:
+def flat_colors(state: State) -> dict[str, Any]:
     """Return the colours of the flat scene as CSS has them."""
     theme = theme_of(state)
 
@@ -63,7 +64,7 @@ def flat_colors(state: Any) -> dict[str, Any]:
     }
 
 
-def flat_scene(session: Session) -> FlatScene:
+def overlay(session: Session) -> FlatScene:
     """Return the flat scene of a session, in its place over the canvas."""
     row = Control(
         partial(FlatScene, session),

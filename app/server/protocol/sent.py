@@ -261,6 +261,7 @@ class ToBrowser(TypedDict, total=False):
     bones: Bones | None
     gizmo: Rings | None
     mover: Knob | None
+    points: dict[str, Vector] | None
     handles: Box | None
     brush: Brush | None
     lasso: Through | None

@@ -1,0 +1,5 @@
+"""What follows the findings."""
+
+from .results import watch
+
+__all__ = ["watch"]

@@ -1,0 +1,5 @@
+"""What follows the results of the laboratory."""
+
+from .results import watch
+
+__all__ = ["watch"]
