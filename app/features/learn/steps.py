@@ -1,6 +1,5 @@
 """Commands of the lesson: go to a step, answer it, press its buttons, leave."""
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -15,7 +14,7 @@ from ...document.loading import open_character
 from ...document.look import set_camera
 from ...document.opening import Opening, Request, motion
 from ...document.selection import selected
-from ...document.session import Session
+from ...document.session import BeforeLesson, Session
 from ...document.side_by_side import SINGLE, standard
 from ...document.state import State
 from ...looks.methods import shown_title, weights_of
@@ -39,16 +38,6 @@ def watch(session: Session) -> None:
     follow(lambda event: answer(session, event.new), "acted", onlychanged=False)
     follow(lambda *events: _prepare(session), "binding")
     follow(lambda *events: session.state.param.update(**unused), "step")
-
-
-@dataclass(frozen=True)
-class Before:
-    """The page from before the lesson."""
-
-    history: History
-    document: Document
-    camera: Camera | None
-    tools: dict[str, Any]
 
 
 def go(session: Session, index: int) -> None:
@@ -164,10 +153,10 @@ def show(
         if state.step < 0 and state.rig is not None:
             tools = {name: getattr(state, name) for name in state.tools}
             at = None if session.view.at_home else session.view.camera
-            before = partial(Before, camera=at, tools=tools)
+            before = partial(BeforeLesson, camera=at, tools=tools)
 
         def note(now: Document) -> None:
-            if before is not None:
+            if before is not None and session.history.now is not None:
                 session.before_lesson = before(session.history, session.history.now)
             session.history = History(now)
 

@@ -57,7 +57,7 @@ def _frame_options(message: DrawFrame) -> dict[str, Any]:
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
-        "page_height": size[1] / ratio,
+        "page_height": max(height, 1.0),
         "fine": message.fine,
     }
 
