@@ -173,10 +173,10 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
 def test_all_parts_start_from_the_files_weights(bound, loop):
     computed = bound.state.binding.weights
     assert "Computed" in changes_of(bound.state)
-    assert not correct.uses_file(bound)
+    assert not correct.uses_file(bound.state)
     correct.choose_file(bound, True)
     settled(bound, loop)
-    assert correct.uses_file(bound)
+    assert correct.uses_file(bound.state)
     np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
     check_bound_as_by_core(bound, arm_rig())
     assert "Computed" not in changes_of(bound.state)
@@ -193,7 +193,7 @@ def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
     assert (whose.value, whose.visible, whose.disabled) == (False, True, False)
     whose.value = True
     settled(bound, loop)
-    assert correct.uses_file(bound)
+    assert correct.uses_file(bound.state)
     correct.overrule(bound, 3, {2: 1.0})
     settled(bound, loop)
     together = len(painted_vertices(bound.state.edits))
