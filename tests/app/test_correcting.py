@@ -24,6 +24,7 @@ from cutcell import (
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import count
+from cutcell_app.derive.memo import Memo
 from cutcell_app.document import loading, look
 from cutcell_app.document.address import from_query
 from cutcell_app.document.document import put
@@ -377,8 +378,9 @@ def test_doubtful_joints_of_a_character_without_weights_are_marked_with_a_reason
             rig=replace(rig, skeleton=skeleton, weights=weights),
             binding=None,
             edits=Edits(),
+            memo=Memo(),
         )
-        rows[weights is None] = joint_rows(state, lambda name, on, make: make(), guess)
+        rows[weights is None] = joint_rows(state, guess)
     assert [row["doubtful"] for row in rows[True]] == [False, True, False]
     assert rows[True][1]["why"] == "control or bone, by its name"
     assert not any(row["doubtful"] for row in rows[False])
