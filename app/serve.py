@@ -19,13 +19,10 @@ from tornado.httpserver import HTTPServer
 
 from cutcell.cli.console import print_warnings
 from cutcell.weights.warm_up import is_compiled, start_process, warm_up
-from cutcell_lab.dataset import load_audit
 from cutcell_viewers.description import Actor
 
 from .derive.processes import get_ready
-from .features.checked import read_checked
-from .features.learn.lesson import Lesson
-from .features.pairs.choices import OpenedAudit
+from .features.opened import open_audit, read_checked
 from .files.upload_cache import UPLOADS
 from .server.connections import LimitedServer
 from .server.frames import check_origins
@@ -99,11 +96,12 @@ def serve(
         No port is free, or the address does not belong to this machine.
     """
     path, frames = None if rig is None else Path(rig), check_origins(frames)
-    opened = None
+    choices: dict[str, Any] = {"actors": dict(actors or {})}
     if pairs is not None:
-        opened = OpenedAudit(pairs, load_audit(pairs))
+        opened = choices["opened"] = open_audit(pairs)
         print(f"{len(opened.pairs):,} pairs, {len(opened.audit.keep):,} characters to keep")
-    steps = None if lesson is None else read_checked(lesson)
+    if lesson is not None:
+        choices["lesson"] = read_checked(lesson)
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)
@@ -112,7 +110,7 @@ def serve(
     sys.setswitchinterval(0.001)
     UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
-    server = begin(path, chosen, address, opened, actors, frames, steps)
+    server = begin(path, chosen, address, choices, frames)
     if threading.current_thread() is threading.main_thread():
         # An orderly end removes uploaded files. Python ignores an exit within a finaliser, where
         # the signal may arrive, so the server's loop ends the process.
@@ -139,20 +137,18 @@ def begin(
     path: Path | None,
     port: int,
     address: str = "localhost",
-    opened: OpenedAudit | None = None,
-    actors: Mapping[str, Actor] | None = None,
+    choices: Mapping[str, Any] | None = None,
     frames: Collection[str] = (),
-    lesson: Lesson | None = None,
     **more: Any,
 ) -> Any:
     """Return a listening server of the page, whose loop is not started yet; see `serve`.
 
-    Further arguments are those of `panel.serve`.
+    `choices` are parameters of each page's state. Further arguments are those of `panel.serve`.
     """
     patch_panel_dispatch()
     HTTPServer.configure(LimitedServer)
     server = pn.serve(
-        {"/": lambda: page(path, opened, actors, lesson)},
+        {"/": lambda: page(path, choices or {})},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,

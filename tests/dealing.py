@@ -26,7 +26,8 @@ class Dealing(LoadScopeScheduling):
     def __init__(self, config: pytest.Config, log: Producer | None = None) -> None:
         config.option.loadscopereorder = False
         super().__init__(config, log)
-        self.record: dict[str, float] = config.cache.get(RECORD, {})
+        self.cache = getattr(config, "cache", None)  # absent with -p no:cacheprovider
+        self.record: dict[str, float] = self.cache.get(RECORD, {}) if self.cache is not None else {}
         self.seconds: Counter[str] = Counter()
 
     def _split_scope(self, nodeid: str) -> str:
@@ -50,4 +51,5 @@ class Dealing(LoadScopeScheduling):
         self.seconds[path] += duration
         if all(self.assigned_work[node][path].values()):
             self.record[path] = round(self.seconds[path], 1)
-            self.config.cache.set(RECORD, self.record)
+            if self.cache is not None:
+                self.cache.set(RECORD, self.record)

@@ -29,6 +29,7 @@ from cutcell_app.files.table_export import save_numbers
 from tests.lab.baselines.test_compare import character
 from tests.viewers.arm import arm_rig
 from cutcell_viewers import film
+from cutcell_viewers.order import Order
 from cutcell_viewers.weights_scene import weights_scene
 
 folder, names = Path(sys.argv[1]), sys.argv[2:]
@@ -37,7 +38,7 @@ cutcell.save(folder / "source.glb", rig)
 stored = cutcell.load(folder / "source.glb")
 (folder / "source.glb").unlink()
 compared = compare([character()], ["artist", "euclidean"])
-order = film.Order(weights_scene(rig, rig.weights, 1), size=(320, 240))
+order = Order(weights_scene(rig, rig.weights, 1), size=(320, 240))
 film.TURN_SECONDS = 0.5
 
 def write(path):

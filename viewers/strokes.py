@@ -27,6 +27,7 @@ out float strokeAlong, strokeAway, strokeFade, strokeGap;
 float strokeReach(float w) {
   float spaced = strokeThick * strokeScale / w, thin = 0.5 * strokeUnit;
   strokeFade = strokeThick > 0.0 ? clamp(spaced / thin, 0.5, 1.0) : 1.0;
+  strokeGap = strokeDash * strokeScale / w > 3.0 * strokeUnit ? 0.55 : 2.0;
   return strokeThick > 0.0 ? clamp(spaced, thin, 6.0 * strokePixels) : 0.5 * strokePixels + thin;
 }
 """
@@ -38,7 +39,6 @@ _AWAY = """
   }
   strokeAway = 0.35 * clamp((gl_Position.w - strokeDepths.x)
     / max(strokeDepths.y - strokeDepths.x, 1e-9), 0.0, 1.0);
-  strokeGap = strokeDash * strokeScale / gl_Position.w > 3.0 * strokeUnit ? 0.55 : 2.0;
 """
 _LINE = (
     """

@@ -10,6 +10,7 @@ from cutcell.binding import Binding
 from cutcell.diagnosis import Diagnosis, diagnose
 from cutcell.editing import Edits, JointEdit
 from cutcell.editing.restructure import restructured_skeleton
+from cutcell.editing.stored import stored_edits
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -96,6 +97,16 @@ def tidy(edits: Edits) -> Edits:
     nothing = JointEdit()
     joints = {name: one for name, one in edits.joints.items() if one != nothing}
     return edits if len(joints) == len(edits.joints) else replace(edits, joints=joints)
+
+
+def edits_in(rig: Rig) -> tuple[Edits, str]:
+    """Return the edits that a character's file holds, and why they are not applied, if so."""
+    try:
+        edits = stored_edits(rig) or Edits()
+        applied(rig, None, edits)
+    except CutcellError as error:
+        return Edits(), f"The layers of the file were not applied: {error}"
+    return edits, ""
 
 
 def repaired(

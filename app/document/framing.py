@@ -11,7 +11,7 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.palette import THEMES, Theme, to_hex
 
-from ..messages import sent
+from ..server.protocol import sent
 from .state import State
 
 

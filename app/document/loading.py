@@ -11,8 +11,8 @@ from cutcell_assets import DEMOS
 
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
-from ..messages.received import Visit
 from ..server.messages import visible_text
+from ..server.protocol.received import Visit
 from .address import from_query, with_scene
 from .opening import Opening, Request, commit
 from .recording import restore

@@ -2,7 +2,7 @@
 
 from cutcell_viewers.camera import Camera, framing
 
-from ..messages.received import Pick, PickNode, PickVertex
+from ..server.protocol.received import Pick, PickNode, PickVertex
 from .framing import bounds_of, camera_part
 from .session import Session
 

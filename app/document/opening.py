@@ -15,7 +15,6 @@ from typing import Any
 from param.parameterized import batch_call_watchers
 
 from cutcell.editing import Edits
-from cutcell.editing.stored import stored_edits
 from cutcell.errors import CutcellError, FileError, ParameterError
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
@@ -24,11 +23,11 @@ from cutcell_viewers.camera import Camera, framing
 
 from ..derive.jobs import READING
 from ..derive.tasks import Task
-from ..files.reading import demo_rig, main_file, read
+from ..files.reading import demo_rig, main_file, read, reported
 from . import recording
 from .address import camera_of, first_clip, initial
 from .document import Document, Repair, applied, put, same_structure
-from .edits import repaired_again
+from .edits import edits_in, repaired_again
 from .framing import bounds_of, camera_part, first_joint
 from .look import set_camera
 from .method import chosen_by
@@ -113,26 +112,35 @@ class Opening(Task):
         self._request = request
         is_open = request.source == session.source and not request.again
         own = request.rig or (session.state.own if is_open else None)
-        load, stage = (lambda check: own), ""
-        if own is None:
-            load, stage = self._reader(request)
-        document = request.document
-        repair = None if document is None else document.repair
-        codes = request.arrival.get("repairs", ()) if repair is None else repair.codes
-        if own is not None and (not codes or (repair is not None and repair.after is not None)):
+        load = self._reader(request) if own is None else reported("repairing", lambda check: own)
+        codes, repair = self._repairs(request, own)
+        if own is not None and (repair is not None or not codes):
             self.finish((own, repair, ""))
             return None
-        resolution = request.choices.get("resolution", session.state.resolution)
+        document, state = request.document, session.state
+        resolution = request.choices.get("resolution", state.resolution)
 
         def compute(progress: Progress) -> tuple[Rig, Repair | None, str]:
-            progress(stage, 0.0)
-            rig = load(lambda: progress(stage, 0.0))
+            rig = load(progress)
             if not codes:
                 return rig, repair, ""
             edits = edits_in(rig)[0] if document is None else document.edits
             return rig, *repaired_again(rig, codes, edits, resolution, progress)
 
         return compute
+
+    def _repairs(
+        self, request: Request, own: Rig | None
+    ) -> tuple[tuple[tuple[str, ...], ...], Repair | None]:
+        """Return the codes of the repairs that are to be shown, and the repairs if at hand."""
+        state, document = self._session.state, request.document
+        if document is None:
+            codes = request.arrival.get("repairs", ())
+            at_hand = state.repair if own is state.own else None
+            return codes, at_hand if at_hand is not None and at_hand.codes == codes else None
+        repair = document.repair
+        codes = () if repair is None else repair.codes
+        return codes, None if repair is None or (codes and repair.after is None) else repair
 
     def finish(self, result: tuple[Rig, Repair | None, str]) -> None:
         """Open the character that was read."""
@@ -146,12 +154,12 @@ class Opening(Task):
         session.state.param.trigger("demo")
         recording.publish(session, again=True)
 
-    def _reader(self, request: Request) -> tuple[Callable[[Callable[[], object]], Rig], str]:
-        """Return what loads the character, and what it says meanwhile."""
+    def _reader(self, request: Request) -> Callable[[Progress], Any]:
+        """Return what loads the character."""
         uploads, (kind, _, demo) = self._session.uploads, request.source.partition(" ")
         if kind == "demo":
             title = next(one.title for one in DEMOS if one.id == demo)
-            return (lambda check: demo_rig(demo)), f"loading {title}"
+            return reported(f"loading {title}", lambda check: demo_rig(demo))
         key = request.source[1:]
         paths = uploads.take(key) if key else request.paths or self._session.paths
         if paths is None:
@@ -160,7 +168,7 @@ class Opening(Task):
         self._key = key
         path = main_file(paths)
         self._name = path.name
-        return (lambda check: read(path, check)), f"loading {path.name}"
+        return reported(f"loading {path.name}", lambda check: read(path, check))
 
 
 def commit(
@@ -284,13 +292,3 @@ def motion(session: Session, panel: str, arrival: Mapping[str, Any]) -> dict[str
         return {}
     names = ("moving", "playing") if session.state.panels[panel].poses else ("animating",)
     return dict.fromkeys(names, True)
-
-
-def edits_in(rig: Rig) -> tuple[Edits, str]:
-    """Return the edits that a character's file holds, and why they are not applied, if so."""
-    try:
-        edits = stored_edits(rig) or Edits()
-        applied(rig, None, edits)
-    except CutcellError as error:
-        return Edits(), f"The layers of the file were not applied: {error}"
-    return edits, ""

@@ -6,7 +6,7 @@ from typing import Any
 
 from cutcell.errors import CutcellError
 
-from ..messages.sent import ToBrowser
+from ..server.protocol.sent import ToBrowser
 from .address import NOTED, simple, snapshot, to_query
 from .document import Document, put
 from .session import Session

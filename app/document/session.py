@@ -3,6 +3,7 @@
 import logging
 import shutil
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar, Unpack
 
@@ -16,9 +17,9 @@ from ..derive.tasks import Tasks
 from ..derive.work import Work
 from ..files.edits_file import EditsFile
 from ..files.upload_cache import UPLOADS, PageUploads
-from ..messages.received import Message
-from ..messages.sent import ToBrowser
 from ..server.messages import error_text
+from ..server.protocol.received import Message
+from ..server.protocol.sent import ToBrowser
 from .document import Document, History
 from .state import State
 
@@ -26,6 +27,16 @@ logger = logging.getLogger("cutcell.app")
 
 WAITING = "waiting for the weights"
 """The stage of an export before there is what it exports."""
+
+
+@dataclass(frozen=True)
+class BeforeLesson:
+    """The page from before the lesson."""
+
+    history: History
+    document: Document
+    camera: Camera | None
+    tools: dict[str, Any]
 
 
 M = TypeVar("M", bound=Message)
@@ -85,8 +96,7 @@ class Session:
         Key that opens the current character again; see `Document`.
     paths : list of Path
         Files of this machine that the page was opened with.
-    before_lesson : tuple or None
-        The history, the document, the camera and the tools from before the lesson.
+    before_lesson : BeforeLesson or None
     computed : Document or None
         What was computed last.
     older_message : tuple or None
@@ -107,7 +117,7 @@ class Session:
         self.uploads = PageUploads(UPLOADS)
         self.source = ""
         self.paths: list[Path] | None = None
-        self.before_lesson: tuple[Any, ...] | None = None
+        self.before_lesson: BeforeLesson | None = None
         self.computed: Document | None = None
         self.older_message: tuple[str, str] | None = None
         self.edits_file = EditsFile(self.uploads)

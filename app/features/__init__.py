@@ -7,6 +7,7 @@ A package may have these modules, whose names `Feature` lists:
 - `scene.py`: the scene of a panel;
 - `controls.py`: the controls of a panel;
 - `view.py`: handles and other parts of the view, keys, and what else follows the state.
+- `overlay.py`: a widget over the canvas.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ PACKAGES = (
     "features.compare.disagreement",
     "features.compare.lab",
     "features.check",
-    "features.learn",
     "features.flat",
+    "features.inspector",
+    "features.learn",
     "features.pairs",
 )
 """In the order in which panels are offered."""
@@ -120,6 +122,12 @@ class Feature:
         return self._declared("controls", "CONTROLS")
 
     @cached_property
+    def overlay(self) -> Callable[[Session], Any] | None:
+        """Returns a widget over the canvas for a session; `overlay.overlay`."""
+        overlay: Callable[[Session], Any] | None = self._declared("overlay", "overlay")
+        return overlay
+
+    @cached_property
     def parts(self) -> Mapping[str, Callable[[State], Any]]:
         """Parts of the view by their names in messages; None for none; `view.PARTS`."""
         return dict(self._declared("view", "PARTS", {}))
@@ -131,7 +139,10 @@ class Feature:
 
     @cached_property
     def keys(self) -> Mapping[str, Callable[[Session], Any]]:
-        """Actions by their names in `frontend/keys.js`; `view.KEYS`."""
+        """Actions by their names in `frontend/page/keys.js`; `view.KEYS`.
+
+        The open panel's come first, then those of the page.
+        """
         return dict(self._declared("view", "KEYS", {}))
 
     @cached_property

@@ -3,6 +3,7 @@
 import functools
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from cutcell.errors import FileError
 from cutcell.io.files import naming
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
+from cutcell.runtime.progress import Progress
 from cutcell_assets import demo_path
 
 from ..derive.processes import MAX_SECONDS, in_process
@@ -35,6 +37,16 @@ def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
         return frozen(
             in_process(load_with_materials, path, check=check, ended=ENDED, limit=MAX_SECONDS)
         )
+
+
+def reported(stage: str, load: Callable[[Callable[[], object]], Any]) -> Callable[[Progress], Any]:
+    """Return a function that loads a character, and reports that as a stage."""
+
+    def work(progress: Progress) -> Any:
+        progress(stage, 0.0)
+        return load(lambda: progress(stage, 0.0))
+
+    return work
 
 
 def load_with_materials(path: Path) -> Rig:

@@ -5,8 +5,9 @@ from typing import Any
 
 from cutcell.errors import FileError
 
-from ..messages.reading import read
-from ..messages.received import (
+from ..server.messages import FULL
+from ..server.protocol.reading import read
+from ..server.protocol.received import (
     Announced,
     Message,
     UploadBegin,
@@ -14,7 +15,6 @@ from ..messages.received import (
     UploadEnd,
     UploadPiece,
 )
-from ..server.messages import FULL
 from .upload_cache import Group, UploadCache
 
 MAX_UPLOAD = 200 * 1024 * 1024

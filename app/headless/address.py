@@ -14,7 +14,7 @@ from ..features.state import PageState
 from .choices import Choices
 
 METHOD = (*GRAPH, *WEIGHTS)
-MOMENT = ("bone", "methods", "vertex", "turns", "clip", "minus")
+ENTRIES = ("bone", "methods", "vertex", "turns", "clip", "minus")
 """Entries of the address that are no plain choices of the page."""
 REPLACED = {
     "shown": ("weights_shown",), "error": ("heat", "compare_field"), "turn": ("turns",),
@@ -44,7 +44,7 @@ def read_address(text: str) -> tuple[dict[str, Any], Camera | None]:
     options = {name: page.pop(name) for name in METHOD if name in page}
     first = {n: p.default for n, p in simple(state).items() if n not in (*METHOD, "panel")}
     method = effective({"falloff": state.falloff, **options})
-    moment = {name: arrival[name] for name in MOMENT if name in arrival}
+    moment = {name: arrival[name] for name in ENTRIES if name in arrival}
     camera = camera_of(arrival["camera"]) if "camera" in arrival else None
     return {**first, **page, **moment, **method}, camera
 
@@ -68,9 +68,9 @@ def choices_at(
     """
     replaced = {*explicit, *(name for one in explicit for name in REPLACED.get(one, ()))}
     rest = {name: value for name, value in address.items() if name not in replaced}
-    own = {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
+    named = dict(fields)
+    named |= {name: rest.pop(name) for name in ("panel", "bone", "methods") if name in rest}
     method = chosen_method({**options, **{n: rest.pop(n) for n in METHOD if n in rest}})
-    named: dict[str, Any] = {**fields, **own}
     return Choices(**named, settings={**rest, **settings}, method=method)
 
 

@@ -18,7 +18,6 @@ from ..document.method import GRAPH, method_of
 from ..document.side_by_side import NOW, listed, standard
 from ..document.state import State
 from ..features.state import PANELS, PageState
-from ..features.weights.choices import SHOWN
 from ..shell.session.sweep import SWEEPS, has_cut
 from .names import bone_index, clip_index
 
@@ -110,7 +109,9 @@ def state_of(rig: Rig, choices: Choices) -> State:
         or standard(rig),
     )
     if choices.shown is not None or bone is not None:
-        state.weights_shown = check_choice("shown", choices.shown or "bone", SHOWN)
+        state.weights_shown = check_choice(
+            "shown", choices.shown or "bone", state.param.weights_shown.objects
+        )
     if choices.turn is not None:
         axis, degrees = choices.turn
         k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))

@@ -218,7 +218,7 @@ def _write_page(
 def _write_lesson(explicit: list[str], out: Path | None, source: Path | None, quiet: bool) -> None:
     from cutcell.runtime.writing import check_place, write_all
 
-    from ..features.checked import read_checked
+    from ..features.opened import read_checked
     from .lesson_page import lesson_page
 
     if out is None or out.suffix.lower() != ".html":

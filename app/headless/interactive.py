@@ -37,13 +37,14 @@ from cutcell_viewers.weights_scene import MIXED
 
 from ..document.framing import bones_part, bounds_of, camera_part, first_joint, theme_part
 from ..document.state import State
+from ..editing.binding.bound import build_shown
 from ..editing.correct.joints import in_order
-from ..features.graph.scene import build_shown
-from ..features.inspector.facts import MAX_DISTANCES, MAX_WEIGHTS, components
-from ..features.pose.scene import clip_part, gizmo_part
+from ..features.inspector.facts import MAX_DISTANCES, MAX_WEIGHTS
 from ..features.scenes import following, resolve
 from ..features.state import PageState
 from ..files.table_export import settings_of
+from ..looks.components import components
+from ..looks.pose import clip_part, gizmo_part
 from ..widgets.changes import changes
 from ..widgets.modules import FOLDER, names, style
 from ..widgets.view import SceneView

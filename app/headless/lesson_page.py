@@ -20,7 +20,7 @@ from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.palette import THEMES
 
 from ..document.framing import theme_part
-from ..features.flat.flat_scene import flat_colors
+from ..features.flat.overlay import flat_colors
 from ..features.learn.lesson import Lesson, Step, built_in
 from ..features.learn.plots import plot_of
 from ..features.learn.steps import (

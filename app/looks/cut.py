@@ -10,8 +10,8 @@ from cutcell_viewers.graph_scene import box_across
 from ..document.framing import bounds_of
 from ..document.session import Session
 from ..document.state import State
-from ..messages.received import MoveCut
-from ..messages.sent import Box
+from ..server.protocol.received import MoveCut
+from ..server.protocol.sent import Box
 from .character import cut_of
 
 

@@ -1,4 +1,4 @@
-"""Pose or motion of the character, as it is chosen."""
+"""Pose or motion of the character: as it is chosen, for the view, and commands."""
 
 import numpy as np
 
@@ -7,7 +7,9 @@ from cutcell.rig import Clip
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, swing
 
+from ..document.session import Session
 from ..document.state import State
+from ..server.protocol.sent import Motion, Rings
 
 SWING_DEGREES = 50.0
 
@@ -62,3 +64,56 @@ def chosen_clip(state: State) -> Clip:
     if 0 <= state.clip < len(state.rig.clips):
         return state.rig.clips[state.clip]
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
+
+
+MAX_NUMBERS = 2**22
+"""Largest motion that is sent to the browser (16 MB); longer ones are sent with fewer frames."""
+
+
+TOGETHER = 64
+"""Number of frames that are sampled at a time."""
+
+
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
+    """Return a motion as a message for the view, with a limited number of numbers."""
+    if clip is None or not len(times := clip.times):
+        return None
+    most = max(limit // max(16 * clip.joints, 1), 2)
+    if len(times) > most:
+        times = np.linspace(0, clip.duration, most)
+    matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)
+    for first in range(0, len(times), TOGETHER):
+        frames = slice(first, first + TOGETHER)
+        matrices[frames] = pose_in_scene(state.rig, clip.sample(times[frames]))
+    return {"times": times, "matrices": matrices.ravel()}
+
+
+def gizmo_part(state: State) -> Rings | None:
+    """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
+    if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
+        return None
+    rig, joint = state.rig, state.joint
+    centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]
+    return {
+        "joint": joint,
+        "joints": len(rig.skeleton.joints),
+        "centre": centre.tolist(),
+        "below": np.flatnonzero(rig.skeleton.subtree[joint]).astype(np.int32),
+    }
+
+
+def rest(session: Session) -> None:
+    """Put the character back as it was in the file."""
+    session.state.param.update(turns={}, moving=False, playing=False)
+
+
+def play(session: Session) -> None:
+    """Play the chosen motion, or pause it; on the panel Pose if the open one moves nothing."""
+    state = session.state
+    if state.bare:
+        return
+    if state.moving and state.open_panel.poses:
+        state.playing = not state.playing
+    else:
+        panel = state.panel if state.open_panel.poses else "pose"
+        state.param.update(panel=panel, moving=True, playing=True)

@@ -21,7 +21,7 @@ LESSONS = {demo.id: demo.lesson for demo in DEMOS}
 
 
 def faults(state: State) -> list[str]:
-    """Return what the diagnosis says of the character, but for what is only good to know."""
+    """Return the messages of findings that are more severe than notes."""
     severe = [f for f in state.open_findings if f.severity != "note"]
     return [finding.message for finding in severe[:MAX_FAULTS]]
 

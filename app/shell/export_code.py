@@ -3,8 +3,8 @@
 import cutcell
 from cutcell.io import binary_ending
 
+from ..document.edits import edits_in
 from ..document.method import effective, method_of
-from ..document.opening import edits_in
 from ..document.session import Session
 from ..editing.correct.commands import file_name, stored
 from ..files.reading import main_file

@@ -143,7 +143,7 @@ BASE = ui.section(
         "",
         "Base, below all layers",
         options=WHOSE,
-        value=correct.uses_file,
+        value=lambda state: state.edits.base == "file",
         act=correct.choose_file,
         visible=lambda state: ui.has_weights(state) and not state.bare,
         disabled=lambda state: state.graph is None,

@@ -5,6 +5,7 @@ import weakref
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from urllib.parse import urlencode
 
@@ -14,19 +15,14 @@ from panel.io.resources import LOCAL_DIST
 from tornado.ioloop import IOLoop
 
 from cutcell_assets import DEMOS
-from cutcell_viewers.description import Actor
 
 from ..derive.jobs import Gate, on_its_thread
 from ..document import loading
 from ..document.opening import Request
 from ..document.session import Session
-from ..features.flat.flat_scene import flat_scene
-from ..features.inspector.card import inspector
-from ..features.learn.lesson import Lesson
-from ..features.learn.lesson_card import LessonNotes, lesson_card, steps_of
+from ..features import FEATURES
+from ..features.learn.overlay import LessonNotes, steps_of
 from ..features.learn.welcome import Welcome
-from ..features.pairs import results as pairs
-from ..features.pairs.choices import OpenedAudit
 from ..server.memory import collect_later, detach_from_panel
 from ..widgets import controls as ui
 from ..widgets.modules import style
@@ -44,16 +40,11 @@ ROOMY = 1000
 """Windows that are less wide than this show a lesson without the sidebar at first."""
 
 
-def page(
-    path: Path | None = None,
-    opened: OpenedAudit | None = None,
-    actors: Mapping[str, Actor] | None = None,
-    lesson: Lesson | None = None,
-) -> pmui.Page:
+def page(path: Path | None = None, choices: Mapping[str, Any] = MappingProxyType({})) -> pmui.Page:
     """Return a new page, on which a character is about to stand.
 
-    The first demo comes without a path, and the built-in lesson without a lesson. `opened` is an
-    audit whose pairs are looked at; `actors` are shown with every character.
+    The first demo comes without a path. `choices` are parameters of the state that the server was
+    started with, such as a lesson, an audit, or actors that are shown with every character.
     """
     document: Any = pn.state.curdoc
     # Panel sets this as it writes a session's HTML; here that is written once for all of them.
@@ -61,11 +52,8 @@ def page(
     gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = begin(gate)
-    session.state.actors = dict(actors or {})
-    if lesson is not None:
-        session.state.lesson = lesson
-    if opened is not None:
-        pairs.look_at(session, opened)
+    session.state.param.update(**choices)
+    opened = session.state.opened
     # Panel keeps its settings per document for as long as the document lives: what they hold
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)
@@ -99,7 +87,7 @@ def notes(session: Session) -> pmui.Page:
 
 
 def request_query() -> str:
-    """Return what the address that was asked for says behind its question mark."""
+    """Return the query of the requested address."""
     arguments = pn.state.session_args or {}
     pairs = [(name, value) for name, values in arguments.items() for value in values[:1]]
     return urlencode(pairs)
@@ -125,10 +113,8 @@ def layout(session: Session, greeting: bool = False) -> pmui.Page:
     )
     canvas = pmui.Column(
         view,
-        flat_scene(session),
         messages(session),
-        inspector(session),
-        lesson_card(session),
+        *(one.overlay(session) for one in FEATURES.values() if one.overlay is not None),
         sizing_mode="stretch_both",
         margin=0,
         styles={"position": "relative"},

@@ -1,6 +1,5 @@
 """Status of the work: progress, counts and seconds, warnings, errors."""
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,9 @@ from cutcell.rig import Rig
 from ..document.session import Session
 from ..document.state import State
 from ..editing.binding.recovery import cancel
-from ..features.check.results import go_to
 from ..server.messages import sentence, visible_text
 from ..widgets import controls as ui
 from ..widgets.modules import style
-from .warnings import WarningLink, warnings
 
 TITLES = {
     "compile": "Compiling, once on this machine (about a minute)",
@@ -25,7 +22,7 @@ TITLES = {
     "weights": "Computing weights",
 }
 SHADOW = {"bgcolor": "background.paper", "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)"}
-DOORS = {
+BUTTONS = {
     **SHADOW,
     "borderRadius": "8px",
     "flexWrap": "wrap",
@@ -55,8 +52,8 @@ def only_weights(event: Any) -> bool:
 
 
 def warning(state: State) -> tuple[str, str] | None:
-    """Return what a person should know about the result."""
-    texts = [door.text for door in warnings(state)]
+    """Return the warnings about the result as one message."""
+    texts = [link.text for link in state.warnings]
     return ("warning", " ".join(sentence(visible_text(text)) for text in texts)) if texts else None
 
 
@@ -143,7 +140,7 @@ def messages(session: Session) -> pmui.Column:
         closeable=True, margin=0, visible=False, variant="outlined", **ui.WIDE,
         sx={**SHADOW, "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0}},
     )  # fmt: skip
-    doors = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=DOORS)
+    buttons = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=BUTTONS)
 
     def update(*events: Any) -> None:
         if events and all(only_weights(event) for event in events):
@@ -154,27 +151,31 @@ def messages(session: Session) -> pmui.Column:
         expected = warning(state) if state.lesson_step is None else None
         severity, text = state.message or expected or ("info", "")
         alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
-        texts = [] if state.message or not expected else warnings(state)
-        leads = [door for door in texts if door.code]
-        doors.objects = [ui.draw(session, _door(door)) for door in leads]
-        doors.visible = bool(leads)
+        linked = [] if state.message or not expected else state.warnings
+        links = [link for link in linked if link.code]
+        buttons.objects = [ui.draw(session, _button(link)) for link in links]
+        buttons.visible = bool(links)
 
     def closed(event: Any) -> None:
         if event.new:
-            alert.visible = doors.visible = False
+            alert.visible = buttons.visible = False
 
     state.param.watch(update, ["message", "binding", "built_graph", "step"])
     alert.param.watch(closed, "closed")
     place = ui.column(
-        alert, doors, stylesheets=[style("page/messages_place")],
+        alert, buttons, stylesheets=[style("page/messages_place")],
         css_classes=lambda state: ["beside-lesson"] if state.step >= 0 else [],
     )  # fmt: skip
     return ui.draw(session, place)
 
 
-def _door(door: WarningLink) -> Any:
+def _button(link: Any) -> Any:
     """Return the button that leads from a warning to its elements, and to what can be done."""
+
+    def act(session: Session) -> None:
+        session.state.param.update(panel="check", finding=link.code)
+
     return ui.button(
-        door.label, partial(go_to, code=door.code), icon="my_location", variant="text",
+        link.label, act, icon="my_location", variant="text",
         margin=(0, 4), sizing_mode=None,
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 import param
 
-from ..messages.received import Message, PickPoint
+from ..server.protocol.received import Message, PickPoint
 from .modules import Clickable, script
 
 

@@ -2,7 +2,7 @@
 
 import param
 
-from ..messages.received import Carry, Message, Pick
+from ..server.protocol.received import Carry, Message, Pick
 from .modules import Clickable, script
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from panel.custom import JSComponent
 
-from ..messages.reading import read
-from ..messages.received import Message
+from ..server.protocol.reading import read
+from ..server.protocol.received import Message
 
 FOLDER = Path(__file__).parents[1] / "frontend"
 

@@ -2,7 +2,7 @@
 
 import param
 
-from ..messages.received import Message, PickRow, PointAtRow
+from ..server.protocol.received import Message, PickRow, PointAtRow
 from .modules import Clickable, script
 
 

@@ -12,9 +12,9 @@ from cutcell_viewers.description import Description
 from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
-from ..messages.reading import read
-from ..messages.received import CameraMoved, Message, Ready, Time
-from ..messages.sent import ToBrowser
+from ..server.protocol.reading import read
+from ..server.protocol.received import CameraMoved, Message, Ready, Time
+from ..server.protocol.sent import ToBrowser
 from .changes import changes
 from .modules import script
 

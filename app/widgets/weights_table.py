@@ -2,7 +2,7 @@
 
 import param
 
-from ..messages.received import Message, PickBars
+from ..server.protocol.received import Message, PickBars
 from .modules import Clickable, script
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import cutcell
 import cutcell_viewers
-from cutcell_app.editing.compute import Brush, paint_weights
+from cutcell_app.editing import Brush, paint_weights
 from cutcell_assets import demo_path
 from cutcell_viewers.weights_scene import weights_scene
 

@@ -1,7 +1,6 @@
 """The page in a browser, used as a person uses it."""
 
 import re
-import shutil
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from playwright.sync_api import expect
 
 import cutcell
 from cutcell.pose import axis_rotation
-from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene, to_scene
 from cutcell_viewers.pose_scene import joint_turns
 from tests.app.browser import changed
@@ -107,20 +105,15 @@ def test_dragging_turns_the_character_and_picks_nothing(visit):
 
 def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
     visit.panel("Graph")
-    before = visit.look()
     box = visit.page.get_by_role("textbox")
     slider = visit.page.get_by_role("slider", name="Resolution")
-    for value in ("1", "10000"):
-        box.fill(value)
-        box.press("Enter")
-        visit.expect_text(re.compile(rf"resolution must be .* not {value};", re.IGNORECASE))
-        visit.dismiss()
-        visit.settle()
-        expect(box).to_have_value(str(RESOLUTION))
-        expect(slider).to_have_attribute("max", "160")
-    assert changed(before, visit.look()) < 0.001
-    visit.panel("Weights")
-    assert changed(before, visit.look()) > 0.01
+    box.fill("10000")
+    box.press("Enter")
+    visit.expect_text(re.compile("resolution must be .* not 10000;", re.IGNORECASE))
+    visit.dismiss()
+    visit.settle()
+    expect(box).to_have_value(str(RESOLUTION))
+    expect(slider).to_have_attribute("max", "160")
 
 
 def test_a_joint_is_turned_as_the_core_turns_it(visit, small):
@@ -207,10 +200,10 @@ def test_a_component_does_not_tell_back_what_it_was_told(visit):
 
 def test_a_character_that_was_opened_stays_within_reach(visit, tmp_path):
     mine = tmp_path / "mine.glb"
-    shutil.copy(demo_path("rabbit"), mine)
+    cutcell.save(mine, arm_rig())
     visit.open(mine)
     points = visit.report()["actors"]["body"]["points"]
-    visit.choose("Character", "Octopus")
+    visit.choose("Character", "Small")
     stands = "n => (__cutcell.report().actors.body.points === n)"
     visit.page.wait_for_function(f"n => !({stands})(n)", arg=points)
     visit.wait_until_bound()
@@ -238,7 +231,6 @@ def test_another_character_is_seen_from_as_far_as_it_needs_in_the_graph(visit, t
 
 def test_a_long_computation_can_be_cancelled(visit):
     visit.panel("Graph")
-    before = visit.look()
     box = visit.page.get_by_role("textbox")
     box.fill("512")  # some seconds of work, even for a small character
     box.press("Enter")
@@ -246,12 +238,13 @@ def test_a_long_computation_can_be_cancelled(visit):
     visit.expect_text("Cancelled. Nothing was changed.")
     visit.dismiss()
     visit.wait_until_bound()
-    assert changed(before, visit.look()) < 0.001
+    expect(box).to_have_value(str(RESOLUTION))
 
 
-def test_a_file_can_be_dropped_on_the_canvas(visit):
+def test_a_file_can_be_dropped_on_the_canvas(visit, tmp_path):
     points = len(visit.points())
-    content = list(demo_path("rabbit").read_bytes())
+    cutcell.save(tmp_path / "arm.glb", arm_rig())
+    content = list((tmp_path / "arm.glb").read_bytes())
     visit.page.get_by_role("application").evaluate(
         """(canvas, content) => {
           const files = new DataTransfer()

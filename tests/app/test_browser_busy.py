@@ -2,9 +2,13 @@
 
 import re
 
+import pytest
+
 import cutcell
 from cutcell_assets import demo_path
 from tests.app.browser import GO
+
+pytestmark = pytest.mark.slow
 
 
 def test_exports_films_and_findings_come_though_weights_are_computed(visit, tmp_path):
@@ -25,9 +29,8 @@ def test_exports_films_and_findings_come_though_weights_are_computed(visit, tmp_
     visit.page.get_by_role("tab", name="Pose", exact=True).click()
     visit.slide("About Z", "PageUp", 3)
     visit.settle()
-    for _ in range(100):  # the browser saves a file a moment after the page is idle
-        if len(files) < 2:
-            visit.page.wait_for_timeout(100)
+    while len(files) < 2:  # the browser saves a file a moment after the page is idle
+        visit.page.wait_for_timeout(20)
     assert files.keys() == {".glb", ".gif"}
     assert files[".gif"].read_bytes().startswith(b"GIF8")
     weights = cutcell.bind(robot, 160).weights

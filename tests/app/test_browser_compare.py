@@ -23,6 +23,14 @@ def test_methods_of_a_real_character_are_compared(visit):
     methods_stand_side_by_side_with_their_measures(visit)
     one_camera_turns_all(visit)
     differences_errors_and_poses_are_seen(visit)
+
+
+def test_what_is_seen_in_a_comparison_is_mended(visit):
+    visit.open(SOURCE)
+    visit.panel("Compare")
+    box(visit, "cutcell (animation)").uncheck()
+    box(visit, "Current weights").check()
+    box(visit, "Euclidean").uncheck()
     visit.button("Computed").click()
     visit.settle()
     the_largest_disagreement_is_mended(visit)

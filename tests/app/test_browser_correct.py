@@ -99,12 +99,6 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, small, tmp_path):
     weights = exported(visit, tmp_path).weights
     fresh = cutcell.bind(small, RESOLUTION, edits=held)
     np.testing.assert_allclose(weights, fresh.weights, atol=1 / 255)
-    visit.button("Clear all").click()
-    visit.settle()
-    expect(visit.page.get_by_text("No edits yet")).to_be_visible()
-    visit.button("Undo").click()
-    visit.settle()
-    assert corrected(visit) == held
     path = tmp_path / "mine.json"
     Edits(layers=[Layer(Computed(gain={small.skeleton.names[0]: 2}))]).save(path)
     with visit.page.expect_file_chooser() as chooser:
@@ -143,31 +137,15 @@ def test_a_joint_is_dragged_and_typed_and_stays_so_in_the_file(visit, small, tmp
     fresh = cutcell.bind(small.with_joints(moved.skeleton.joints), RESOLUTION)
     np.testing.assert_allclose(moved.weights, fresh.weights, atol=1e-3)
 
-    come_again(visit)
-    assert corrected(visit) == held
-    visit.button("Reset position").click()
-    visit.settle()
-    visit.expect_text("No edits yet")
-    visit.button("Undo").click()
-    visit.settle()
-    assert corrected(visit) == held
-    visit.button("Redo").click()
-    visit.settle()
-
     field = visit.page.get_by_role("textbox", name="Y", exact=True)
-    field.focus()
     field.fill("nonsense")
-    visit.page.keyboard.press("Enter")
+    field.press("Enter")
     visit.expect_text("Y must be a number")
     visit.button("Close").click()
     field.fill("0.95")
-    visit.page.keyboard.press("Enter")
+    field.press("Enter")
     visit.settle()
     assert corrected(visit).joints["forearm.L"].position[1] == 0.95
-    visit.button("Centre in limb").focus()
-    visit.page.keyboard.press("Enter")
-    visit.settle()
-    assert corrected(visit).joints["forearm.L"].position[1] != 0.95
 
 
 def test_a_part_is_glued_to_a_joint(visit, small, tmp_path):
@@ -293,23 +271,11 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, small, tmp_path)
     visit.page.keyboard.press("Escape")
     expect(paints).not_to_be_checked()
 
-    visit.page.reload()
-    visit.wait_until_bound()
-    visit.dismiss()
+    come_again(visit)
     assert corrected(visit) == held
     weights = exported(visit, tmp_path).weights
     fresh = cutcell.bind(small, RESOLUTION, edits=held)
     np.testing.assert_allclose(weights, fresh.weights, atol=1 / 255)
-    visit.button("Clear all").click()
-    visit.expect_text("No edits yet")
-    path = tmp_path / "painted.json"
-    held.save(path)
-    with visit.page.expect_file_chooser() as chooser:
-        visit.page.locator("label", has_text="Open").click()
-    chooser.value.set_files(path)
-    visit.expect_text("Edited: 1 layer.")
-    visit.settle()
-    assert corrected(visit) == held
 
 
 def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):

@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 from tests.app.browser import LOAD_MS, Visit, served
 from tests.app.small import SMALL
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 # Browsers that block other sites' data let no frame of another site use its storage.
 NO_STORAGE = """if (self !== top) {

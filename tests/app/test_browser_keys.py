@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from cutcell_app.features.state import PANELS
+from tests.app.test_browser_accessibility import TITLES
 
 pytestmark = pytest.mark.slow
 
@@ -93,13 +93,11 @@ def check_menu(visit, key):
     visit.page.wait_for_function(f"() => ({ROLE})() === 'combobox'")
 
 
-def test_every_control_is_reached_and_every_menu_opens_by_keys(visit):
-    for panel in PANELS.values():
-        if panel.needs_audit:
-            continue
-        visit.panel(panel.title)
-        assert len(walk(visit)) >= 2, f"{panel.title}: the menus of the character and of the bone"
-        assert visit.page.evaluate(MISSED) == [], panel.title
+@pytest.mark.parametrize("title", TITLES)
+def test_every_control_is_reached_and_every_menu_opens_by_keys(visit, title):
+    visit.panel(title)
+    assert len(walk(visit)) >= 2, "the menus of the character and of the bone"
+    assert visit.page.evaluate(MISSED) == []
 
 
 def test_a_joint_is_searched_for_and_chosen_by_keys(visit):

@@ -60,10 +60,18 @@ def act(visit, mode, expected):
         canvas.press("Enter")
 
 
-def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
-    visit = Visit(browser, url + SHOWN.format(1), viewport={"width": 1440, "height": 900})
+@pytest.fixture
+def visit(visit):
+    """Let a test change the size of the window."""
+    size = visit.page.viewport_size
+    yield visit
+    visit.page.set_viewport_size(size)
+
+
+def test_the_lesson_is_walked_by_keys_with_answers(visit):
     page = visit.page
-    visit.wait_until_bound()
+    page.set_viewport_size({"width": 1440, "height": 900})
+    visit.go(SHOWN.format(1))
     expect(card(visit)).to_contain_text(LESSON[0].question)
     page.wait_for_function("__cutcell.brush.part")
     page.get_by_role("application").focus()
@@ -101,7 +109,6 @@ def test_the_lesson_is_walked_by_keys_with_answers(browser, url):
     step(visit, len(LESSON) - 2)
     visit.button("Leave").click()
     expect(card(visit)).to_be_hidden()
-    visit.close()
 
 
 @pytest.mark.nightly
@@ -133,10 +140,10 @@ def test_each_step_has_room_and_no_fault(browser, url, width, height, theme):
     visit.close()
 
 
-def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
-    visit = Visit(browser, url + SHOWN.format(4), viewport={"width": 1280, "height": 720})
+def test_a_presentation_has_one_caption_and_its_keys_only_walk(visit):
     page = visit.page
-    visit.wait_until_bound()
+    page.set_viewport_size({"width": 1280, "height": 720})
+    visit.go(SHOWN.format(4))
     page.keyboard.press("f")
     caption = card(visit).locator(".question")
     expect(card(visit)).to_have_class(re.compile("staged"))
@@ -169,4 +176,4 @@ def test_a_presentation_has_one_caption_and_its_keys_only_walk(browser, url):
     page.keyboard.press("Escape")
     expect(card(visit)).not_to_have_class(re.compile("staged"))
     expect(page.get_by_role("combobox", name="Bone")).to_have_text("chest")
-    visit.close()
+    notes.close()

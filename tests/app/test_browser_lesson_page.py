@@ -7,8 +7,8 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from cutcell_app.features.checked import read_checked
 from cutcell_app.features.learn.lesson import built_in
+from cutcell_app.features.opened import read_checked
 from cutcell_app.headless.lesson_page import lesson_page
 from cutcell_assets import demo_path
 from tests.app.browser import IN_SIGHT, changed

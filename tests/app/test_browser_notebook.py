@@ -20,6 +20,8 @@ from cutcell_app.headless.interactive import interactive_page
 from cutcell_app.headless.notebook_widget import PageWidget
 from tests.app.browser import IN_SIGHT, Visit
 
+pytestmark = pytest.mark.nightly
+
 HTML = "text/html"
 WIDGET = "application/vnd.jupyter.widget-view+json"
 SECONDS = 600

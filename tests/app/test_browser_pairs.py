@@ -10,7 +10,7 @@ from tests.app.audits import saved_audit
 from tests.app.browser import Visit, changed, served
 from tests.app.test_browser_accessibility import faults
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 
 def test_pairs_are_stepped_through_and_overruled(browser, tmp_path):

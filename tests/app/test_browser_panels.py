@@ -2,7 +2,6 @@
 
 import re
 
-import numpy as np
 import pytest
 from playwright.sync_api import expect
 
@@ -37,15 +36,6 @@ def test_a_vertex_is_looked_at_closely(visit, small):
     visit.close_card()
     visit.settle()
     assert "vertex" not in visit.report()["actors"]
-
-
-def test_a_vertex_that_no_bone_reaches_says_why(visit, small):
-    lost = np.flatnonzero(cutcell.bind(small, RESOLUTION).distances.fallback)
-    visit.click_vertex(f"{lost.tolist()}.includes(vertex)")
-    expect(visit.card).to_contain_text("no path through the body leads from a bone")
-    expect(visit.card).to_contain_text(re.compile(r"Part \d+ of \d+"))
-    visit.card.get_by_role("button", name="Close the vertex").click()
-    expect(visit.card).to_have_count(0)
 
 
 def test_the_graphs_layers_are_counted_and_coloured(visit, small):
@@ -90,18 +80,6 @@ def test_a_slab_and_a_slice_with_its_rays(visit):
     assert reports == "winding number 1"
     visit.slide("Position", "PageUp", 3)
     assert changed(slice_, visit.look()) > 0.003
-
-
-def test_connectivity_and_threshold_build_the_graph_again(visit):
-    visit.panel("Graph")
-    before = visit.status.inner_text()
-    visit.button("26 diagonals").click()
-    visit.settle()
-    assert interior(visit.status.inner_text()) > interior(before)
-
-
-def interior(status):
-    return int(re.search(r"([\d,]+) interior", status)[1].replace(",", ""))
 
 
 def test_the_field_its_starts_and_the_way_back(visit):
@@ -168,23 +146,14 @@ def test_the_wave_runs_and_halts(visit):
 def test_weights_in_many_ways(visit):
     visit.panel("Weights")
     mixed = visit.look()
-    for option, legend in (
-        ("Dominant bone", None),
-        ("Selected bone", "Weight of"),
-        ("Influences per vertex", "Influences"),
-    ):
-        before = visit.look()
-        visit.choose("Colour by", option)
-        if legend:
-            visit.expect_text(legend)
-        assert changed(before, visit.look()) > 0.001, option
-    one = visit.look()
+    visit.choose("Colour by", "Influences per vertex")
+    visit.expect_text("Influences")
+    count = visit.look()
+    assert changed(mixed, count) > 0.001
     visit.slide("Max influences", "Home")
     visit.expect_text("1.0 influences per vertex")
-    assert changed(one, visit.look()) > 0.0005
-    for _ in range(3):
-        visit.slide("Max influences", "ArrowRight")
-        visit.settle()
+    assert changed(count, visit.look()) > 0.0005
+    visit.button("Undo").click()
     visit.choose("Colour by", "All bones")
     assert changed(mixed, visit.look()) < 0.001
 

@@ -196,6 +196,7 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
 
 def test_a_film_and_the_numbers_come_out(visit, tmp_path):
     for menu, item, start in (
+        ("Image, video", "Picture (PNG)", b"\x89PNG"),
         ("Image, video", "Motion (MP4)", b"ftyp"),
         ("Data", "Weights (CSV)", b"\nvertex,"),
     ):

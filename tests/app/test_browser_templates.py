@@ -65,6 +65,7 @@ def painted(tmp_path):
     return files
 
 
+@pytest.mark.nightly
 def test_a_statue_is_seen_in_its_materials_as_it_moves(visit, painted):
     visit.open(*painted)
     visit.choose("Skeleton", "Biped")

@@ -12,6 +12,7 @@ from cutcell_app.features.compare import results as compare
 from cutcell_app.features.compare.controls import rows_of
 from cutcell_app.shell.session.begin import begin
 from cutcell_lab.baselines import METHODS, BaselineBinding
+from tests.app.loop import NEVER
 from tests.viewers.arm import arm_rig
 
 
@@ -54,13 +55,13 @@ def test_a_slow_method_of_one_session_does_not_hold_up_another(sessions, loop, s
     one, other = sessions
     began, stopped = slow
     one.state.param.update(panel="compare", methods=["slow", "now"])
-    assert began.wait(20)
+    assert began.wait(NEVER)
     other.state.param.update(panel="compare", methods=["now", "euclidean"])
     loop.run_until(lambda: len(other.state.compared) == 2, 60)
     assert ("compared", "slow") in one.state.computing
     assert note(one, "slow") == "Computing"
     compare.cancel(one)
-    assert stopped.wait(20)  # it was asked whether it is still wanted
+    assert stopped.wait(NEVER)  # it was asked whether it is still wanted
     assert "slow" not in one.state.methods
 
 

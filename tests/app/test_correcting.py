@@ -43,7 +43,6 @@ from cutcell_app.features.scenes import resolve
 from cutcell_app.files.edits_file import MAX_IN_ADDRESS, from_text, to_text
 from cutcell_app.shell.export_controls import BASE, changes_of, loss
 from cutcell_app.shell.session import keys
-from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.joint_tree import JointTree
 from cutcell_app.widgets.rows import Rows
@@ -162,13 +161,13 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
     rigid = Layer(Filled({"elbow": 1}), PART)
     correct.correct(bound, Edits(layers=[rigid, Layer(Locked(["wrist"]))]))
     settled(bound, loop)
-    reports = [door.text for door in warnings(bound.state) if "vertex 3 " in door.text]
+    reports = [link.text for link in bound.state.warnings if "vertex 3 " in link.text]
     assert len(reports) == 1
     assert "elbow" in reports[0]
     assert "wrist" in reports[0]
     correct.correct(bound, Edits(layers=[rigid]))
     settled(bound, loop)
-    assert not any("vertex 3 " in door.text for door in warnings(bound.state))
+    assert not any("vertex 3 " in link.text for link in bound.state.warnings)
 
 
 def test_all_parts_start_from_the_files_weights(bound, loop):

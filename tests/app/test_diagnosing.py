@@ -20,13 +20,12 @@ from cutcell_app.editing.binding.recovery import is_current
 from cutcell_app.editing.correct.commands import choose_file, correct, uses_file
 from cutcell_app.features.check.choices import EXPORT
 from cutcell_app.features.check.controls import CONTROLS, summary
-from cutcell_app.features.check.results import go_to, look_at, repair, take_back
+from cutcell_app.features.check.results import look_at, repair, take_back
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
 from cutcell_app.shell.character import faults
 from cutcell_app.shell.export_controls import changes_of
 from cutcell_app.shell.session.export import export_bound
-from cutcell_app.shell.warnings import warnings
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
 from cutcell_viewers.camera import sees
@@ -90,7 +89,7 @@ def test_warnings_lead_to_the_findings_that_show_their_elements(bound, loop):
     rig = bound.state.rig
     warning = LocatedWarning("3 faces are wrong", "inverted-faces")
     bound.state.rig = replace(rig, warnings=("no joint is called so", warning))
-    links = warnings(bound.state)[:2]
+    links = bound.state.warnings[:2]
     assert [link.code for link in links] == ["", "inverted-faces"]
     assert [link.label for link in links] == ["", "Show: inverted faces"]
     turned = replace(rig.mesh, faces=rig.mesh.faces[:, ::-1])
@@ -104,9 +103,9 @@ def test_a_warning_about_new_weights_leads_to_them_and_not_to_those_of_the_file(
     vertices, joints = bound.state.binding.weights.shape
     weights = np.eye(joints)[np.arange(vertices) % joints]
     bound.state.binding = replace(bound.state.binding, rows=csr_array(weights), warnings=(warning,))
-    link = warnings(bound.state)[-1]
+    link = bound.state.warnings[-1]
     assert link.label == "Show: surface that stretches"
-    go_to(bound, link.code)
+    bound.state.param.update(panel="check", finding=link.code)
     bound.engine.update()
     loop.run_until(lambda: bound.state.selected_finding is not None)
     assert bound.state.selected_finding is bound.state.export_diagnosis["stretched-surface"]

@@ -74,7 +74,7 @@ def move(session, joint):
 
 
 def visit(session, address):
-    session.view._listeners["visit"]({"query": address})
+    session.view._handle_msg({"type": "visit", "query": address})
 
 
 OPENINGS = {

@@ -175,7 +175,7 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
         Visitor, "tell", lambda self, **message: tell(self, type="ready", pictures=True)
     )
     visitor = Visitor(here.address, "?rig=robot&resolution=16")
-    wait_until(lambda: begun and begun[-1].state.binding is not None, 120)
+    wait_until(lambda: begun and begun[-1].state.binding is not None)
     visitor.close()
 
 

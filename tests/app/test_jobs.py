@@ -9,6 +9,7 @@ import pytest
 from cutcell.errors import Cancelled
 from cutcell_app.derive.jobs import MAX_UNRESPONSIVE, Gate, on_its_thread
 from cutcell_app.derive.work import Work
+from tests.app.loop import NEVER
 
 LESS = 0.2
 """Seconds of patience in a test."""
@@ -104,10 +105,10 @@ def test_errors_are_told(loop, reports, start):
 def test_newer_work_supersedes_what_runs(loop, reports, start):
     started = threading.Event()
     start(endless(started))
-    assert started.wait(120)
+    assert started.wait(NEVER)
     start(lambda progress: "new")
     loop.run_until(lambda: any(t[0] == "done" for t in reports))
-    loop.run_for(0.2)
+    loop.run_out()
     assert [t[1] for t in reports if t[0] != "progress"] == ["new"]
 
 
@@ -116,32 +117,32 @@ def test_a_result_that_comes_too_late_is_dropped(loop, reports, start):
 
     def deaf(progress):  # asks for no permission to go on, as a numeric kernel does
         held.set()
-        assert go.wait(10)
+        assert go.wait(NEVER)
         return "old"
 
     start(deaf)
-    assert held.wait(10)
+    assert held.wait(NEVER)
     start(lambda progress: "new")
     go.set()
     loop.run_until(lambda: any(t[0] == "done" for t in reports))
-    loop.run_for(0.2)
+    loop.run_out()
     assert [t[1] for t in reports if t[0] == "done"] == ["new"]
 
 
 def test_cancelling_stops_without_a_word(loop, reports, start):
     started = threading.Event()
     start(endless(started))
-    assert started.wait(120)
+    assert started.wait(NEVER)
     assert start.work.cancel("work")
     assert not start.work.cancel("work")
-    loop.run_for(0.2)
+    loop.run_out()
     assert [t for t in reports if t[0] != "progress"] == []
 
 
 def test_a_closed_session_starts_nothing(loop, reports, start):
     start.work.close()
     start(lambda progress: 1)
-    loop.run_for(0.1)
+    loop.run_out()
     assert reports == []
 
 
@@ -165,14 +166,14 @@ def test_waiting_for_a_turn_can_be_cancelled(loop):
     started, reports = threading.Event(), []
     first, second = Work(loop, reports.append), Work(loop, reports.append)
     begin(first, endless(started), reports)
-    assert started.wait(120)
+    assert started.wait(NEVER)
     stages = []
     begin(second, lambda p: "never", reports, lambda stage, f: stages.append(stage))
     loop.run_until(lambda: bool(stages))
     assert "waiting" in stages[0]
     second.close()
     first.close()
-    loop.run_for(0.3)
+    loop.run_out()
     assert reports == []
 
 
@@ -182,7 +183,7 @@ def deaf_work(go, started=None):
     def work(progress):
         if started is not None:
             started.set()
-        assert go.wait(30)
+        assert go.wait(NEVER)
 
     return work
 
@@ -201,7 +202,7 @@ def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, reports,
     go, started = threading.Event(), threading.Event()
     deaf, other = Work(loop, nothing), Work(loop, reports.append)
     begin(deaf, deaf_work(go, started), [])
-    assert started.wait(120)
+    assert started.wait(NEVER)
     begin(other, lambda progress: "done", reports)
     loop.run_for(LESS + 0.3)
     assert reports == [], "it is wanted, and others wait for it"
@@ -215,7 +216,7 @@ def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, reports, impatie
     for _ in range(MAX_UNRESPONSIVE + 1):
         started = threading.Event()
         begin(deaf, deaf_work(go, started), [])
-        assert started.wait(LESS + 120)
+        assert started.wait(NEVER)
     deaf.cancel("work")
     other = Work(loop, reports.append)
     begin(other, lambda progress: "done", reports)
@@ -231,12 +232,12 @@ def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, reports):
 
     def work(number, progress):
         begun.append(number)
-        assert go.wait(10)
+        assert go.wait(NEVER)
         return number
 
     for number in range(5):
         work_of_page.newest("scene", partial(work, number), reports.append)
-    loop.run_for(0.1)
+    loop.run_until(lambda: begun)
     go.set()
     loop.run_until(lambda: reports == [0, 4])
     assert begun == [0, 4]
@@ -247,7 +248,7 @@ def test_the_newest_is_done_after_a_failure_too(loop, reports):
     error, go = ValueError("no"), threading.Event()
 
     def fails(progress):
-        assert go.wait(10)
+        assert go.wait(NEVER)
         raise error
 
     work_of_page.newest("scene", fails, reports.append)
@@ -273,7 +274,7 @@ def test_a_gate_holds_actions_back_and_keeps_their_order(loop):
     gate = Gate(loop)
     for i in range(3):
         gate(lambda i=i: reports.append(i))
-    loop.run_for(0.1)
+    loop.run_out()
     assert reports == []
     gate.open()
     gate(lambda: reports.append(3))
@@ -305,5 +306,5 @@ def test_a_document_is_only_touched_on_its_own_thread(loop, reports):
     assert document.threads == [threading.current_thread()]
     document.session_context = None  # its browser is gone
     schedule(lambda: reports.append("b"))
-    loop.run_for(0.05)
+    loop.run_out()
     assert reports == ["a"]

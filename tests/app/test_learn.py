@@ -7,10 +7,9 @@ from cutcell.errors import FileError
 from cutcell_app.document import loading
 from cutcell_app.document.selection import selected
 from cutcell_app.editing.brush.strokes import select
-from cutcell_app.features.checked import read_checked
-from cutcell_app.features.flat.flat_scene import flat_scene
+from cutcell_app.features.flat.overlay import overlay as flat_scene
 from cutcell_app.features.learn.lesson import FOLDER, KINDS, built_in, read
-from cutcell_app.features.learn.lesson_card import lesson_card
+from cutcell_app.features.learn.overlay import overlay as lesson_card
 from cutcell_app.features.learn.plots import plot_of
 from cutcell_app.features.learn.steps import (
     NO_PATH,
@@ -26,6 +25,7 @@ from cutcell_app.features.learn.steps import (
     pressed_offers,
 )
 from cutcell_app.features.learn.writing import this_view, written
+from cutcell_app.features.opened import read_checked
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PANELS
 from cutcell_app.headless.lesson_page import Recording

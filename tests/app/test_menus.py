@@ -1,7 +1,5 @@
 """Menus of the sidebar, without a page."""
 
-from types import SimpleNamespace
-
 import panel_material_ui as pmui
 import pytest
 
@@ -11,7 +9,6 @@ from cutcell_app.editing.select.controls import WEIGHT_SCALE
 from cutcell_app.features.distance import controls as distance
 from cutcell_app.features.graph.controls import CONTROLS
 from cutcell_app.features.scenes import resolve
-from cutcell_app.features.state import PageState
 from cutcell_app.shell import character
 from cutcell_app.shell.bone import BONE
 from cutcell_app.widgets.controls import draw, pick
@@ -21,8 +18,9 @@ from cutcell_viewers.palette import COLORMAPS, to_hex
 from tests.viewers.arm import arm_rig
 
 
-def test_an_index_that_stays_is_shown_by_its_new_name_at_once():
-    state = PageState(actors={"hand": 0, "foot": 0}, joint=1)
+def test_an_index_that_stays_is_shown_by_its_new_name_at_once(session):
+    state = session.state
+    state.param.update(actors={"hand": 0, "foot": 0}, joint=1)
     chosen = []
     row = pick(
         "Mesh",
@@ -30,7 +28,7 @@ def test_an_index_that_stays_is_shown_by_its_new_name_at_once():
         lambda state: state.joint,
         lambda session, index: chosen.append(index),
     )
-    select = draw(SimpleNamespace(state=state), row)
+    select = draw(session, row)
     shown = select.get_root().data
     reports = []
     select.param.watch(lambda event: reports.append(event.new), "value")

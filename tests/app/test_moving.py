@@ -12,7 +12,7 @@ from cutcell import Edits, JointEdit
 from cutcell.errors import SkeletonError
 from cutcell.rig import Skeleton, TriangleMesh
 from cutcell_app.document import loading
-from cutcell_app.editing.compute import cross_section_centre
+from cutcell_app.editing.compute.limb import cross_section_centre
 from cutcell_app.editing.correct import moving
 from cutcell_app.editing.correct.moving_controls import PLACE
 from cutcell_app.features.scenes import resolve

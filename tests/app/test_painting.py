@@ -12,8 +12,9 @@ from cutcell_app.editing.brush import controls as brush_controls
 from cutcell_app.editing.brush import strokes as brush
 from cutcell_app.editing.brush.choices import MIN_RADIUS, MIN_STRENGTH
 from cutcell_app.editing.brush.strokes import radius_of
-from cutcell_app.editing.compute import Brush, paint_weights
+from cutcell_app.editing.compute.brush import paint_weights
 from cutcell_app.editing.compute.stack import painted_vertices
+from cutcell_app.editing.compute.stroke import Brush
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.layers.commands import STEPS, in_steps
 from cutcell_app.editing.select.controls import SELECTION

@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from cutcell_app.messages import received
-from cutcell_app.messages.reading import MessageError, read
-from cutcell_app.messages.received import RECEIVED
-from cutcell_app.messages.sent import ToBrowser
+from cutcell_app.server.protocol import received
+from cutcell_app.server.protocol.reading import MessageError, read
+from cutcell_app.server.protocol.received import RECEIVED
+from cutcell_app.server.protocol.sent import ToBrowser
 from cutcell_app.widgets.modules import FOLDER, names
 from tests.test_layers import ROOT
 

@@ -3,15 +3,17 @@
 import pytest
 
 from cutcell_app.document.look import pick_vertex
+from cutcell_app.messages.reading import read
 from cutcell_app.shell.session.rendered import MAX_SIDE, MAX_TILES, _frame_options
 
 
 def message(**changes):
     usual = {
+        "type": "draw-frame", "count": 1,
         "size": [800, 600], "ratio": 1, "tiles": [[0, 0, 400, 600], [400, 0, 400, 600]],
         "centre": [0, 0], "position": [0, 0, 5], "focal_point": [0, 0, 0], "fine": True,
     }  # fmt: skip
-    return {**usual, **changes}
+    return read({**usual, **changes})
 
 
 def test_tiles_are_scaled_with_the_frame():

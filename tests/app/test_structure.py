@@ -16,7 +16,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 LAYERS = (
-    {"derive", "messages", "server"},
+    {"derive", "server"},
     {"files"},
     {"document"},
     {"widgets"},
@@ -119,7 +119,7 @@ def test_features_import_no_other_feature(feature):
 
 def test_folders_can_be_taken_in_at_a_glance():
     folders = [path for path in APP.rglob("*") if path.is_dir()]
-    folders = [path for path in (APP, *folders) if path.name not in ("__pycache__", "frontend")]
+    folders = [path for path in (APP, *folders) if path.name != "__pycache__"]
     count = {path: len({*path.iterdir()} - {path / "__pycache__"}) for path in folders}
     large = {str(path): n for path, n in count.items() if n > MAX_ENTRIES}
     assert large == {}

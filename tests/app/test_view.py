@@ -7,8 +7,8 @@ import pytest
 
 import cutcell
 from cutcell_app.document.framing import camera_part, theme_part
-from cutcell_app.messages.reading import MessageError
-from cutcell_app.messages.received import Pick
+from cutcell_app.server.protocol.reading import MessageError
+from cutcell_app.server.protocol.received import Pick
 from cutcell_app.widgets.changes import changes
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import framing

@@ -14,7 +14,7 @@ from cutcell.binding.stages import bind_base
 from cutcell.editing import Computed
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
-from cutcell.runtime.progress import Progress
+from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
 
 graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
@@ -67,3 +67,10 @@ def bind_wide(
 
 MOST = 8
 """Influences that a vertex is measured for, and the most that can be chosen."""
+
+
+def build_shown(inputs: tuple[Any, ...], progress: Progress = silent) -> CutCellGraph:
+    """Return the graph that `Choices.graph_inputs` describe."""
+    mesh, resolution, connectivity, threshold, orient = inputs
+    options = {"connectivity": connectivity, "winding_threshold": threshold, "orient": orient}
+    return cutcell.build_graph(mesh, resolution, **options, progress=progress)

@@ -42,7 +42,7 @@ def cancel(session: Session) -> None:
 
 
 def go_back(session: Session) -> None:
-    """Choose what was computed instead of what cannot be; at first, the defaults."""
+    """Return to the choices that were computed last; at first, to the defaults."""
     session.drop_exports()
     state = session.state
     before = session.computed

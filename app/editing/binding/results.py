@@ -81,7 +81,7 @@ def _bound_inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _shown_with(rig: Rig) -> tuple[Any, ...]:
-    """Return what older weights must share with a rig to be shown on it."""
+    """Return the parts of a rig that older weights must share to be shown on it."""
     return rig.mesh, rig.skeleton.names, rig.skeleton.parents.tobytes()
 
 

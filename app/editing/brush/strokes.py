@@ -13,8 +13,8 @@ from ...document.selection import Selection, selected
 from ...document.session import Session
 from ...document.state import State
 from ...looks.weights import painted_colors
-from ...messages import sent
-from ...messages.received import Paint
+from ...server.protocol import sent
+from ...server.protocol.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
@@ -31,8 +31,8 @@ STRONGER = 0.1
 def watch(session: Session) -> None:
     """Connect the brush of the view to the weights."""
     follow = session.state.param.watch
-    hand = Hand(session)
-    session.view.listen(Paint, hand.paint)
+    controller = BrushController(session)
+    session.view.listen(Paint, controller.paint)
     follow(lambda *events: activate(session), "brush")
     follow(lambda event: deactivate(session) if event.new else None, "joint_handle")
 
@@ -128,7 +128,7 @@ def invert_selection(session: Session) -> None:
         select(session, ~chosen)
 
 
-class Hand:
+class BrushController:
     """Paints as the pointer passes over the body.
 
     Parameters
@@ -153,7 +153,7 @@ class Hand:
             self._stroke = None
             session.view.answer(painted={"gone": True})
             return
-        points = np.asarray(message.points or ()).reshape(-1, 6)
+        points = np.asarray(message.points).reshape(-1, 6)
         corners = points[:, :3].astype(np.intp)
         if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
             stroke.pass_over(corners, points[:, 3:])
@@ -205,7 +205,7 @@ class Hand:
         self._of = state.binding
 
     def _select(self, stroke: Stroke, message: Paint) -> None:
-        """Add what the stroke touched to the selection as it was before it, or take it away."""
+        """Add the touched vertices to the selection from before the stroke, or subtract them."""
         session, before = self._session, self._selected
         count = len(session.state.rig.mesh.vertices)
         chosen = np.zeros(count, np.bool_) if before is None else before.copy()

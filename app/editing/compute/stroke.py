@@ -80,7 +80,7 @@ class PaintSurface:
         self.reach, self.size = SurfaceReach.of(mesh), mesh.cube.size
 
     def prepare(self) -> None:
-        """Compute what strokes need, so that the first one does not wait for it."""
+        """Compute the data of strokes in advance, so that the first stroke does not wait."""
         _ = self._used, self.diffusion
 
     @cached_property

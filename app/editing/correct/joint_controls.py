@@ -71,7 +71,7 @@ def _detect(session: Session) -> None:
 
 
 def _character(state: State) -> Any:
-    """Return what stays the same while a character's weights are edited."""
+    """Return a key of the character that edits of weights do not change."""
     return state.rig and (state.rig.mesh, state.rig.skeleton.names)
 
 
@@ -84,7 +84,7 @@ def _edit(state: State) -> JointEdit:
 
 
 def _corrects(name: str, read: Any = lambda value: value) -> Any:
-    """Return what corrects the chosen joint by the value of a control."""
+    """Return an action that sets an edit of the chosen joint."""
     return lambda session, value: correct.correct_joint(
         session, session.state.joint, **{name: read(value)}
     )

@@ -37,7 +37,7 @@ def shares_of(state: State) -> tuple[NDArray | None, NDArray | None]:
 
 
 def joint_rows(state: State, guess: DeformJoints | None) -> list[dict[str, Any]]:
-    """Return what the tree shows of each joint, parents before their children.
+    """Return the rows of the tree, parents before their children.
 
     These are "joint", "name", "short", "level" (0 for a root), "color", "control" (whether it moves
     bones, or nothing, rather than skin), "doubtful" (whether it may be one, in a file without

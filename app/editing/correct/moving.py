@@ -14,9 +14,10 @@ from cutcell_viewers.character import to_scene
 from ...document.document import applied
 from ...document.session import Session
 from ...document.state import State
-from ...messages.received import MoveJoint
-from ...messages.sent import Knob
-from ..compute import cross_section_centre, joint_mirror
+from ...server.protocol.received import MoveJoint
+from ...server.protocol.sent import Knob
+from ..compute.limb import cross_section_centre
+from ..compute.mirror import joint_mirror
 from .commands import check_alone, correct
 
 DIGITS = 6
@@ -26,9 +27,9 @@ DIGITS = 6
 def watch(session: Session) -> None:
     """Connect the handle to the chosen joint, and joints to the handle."""
     follow = session.state.param.watch
-    hand = Hand(session)
-    session.view.listen(MoveJoint, hand.move)
-    follow(lambda *events: hand.release(), ["rig", "binding", "panel"])
+    controller = JointController(session)
+    session.view.listen(MoveJoint, controller.move)
+    follow(lambda *events: controller.release(), ["rig", "binding", "panel"])
 
 
 def handle_part(state: State) -> Knob | None:
@@ -147,7 +148,7 @@ def digits_of(rig: Rig) -> int:
     return DIGITS - int(np.floor(np.log10(size)))
 
 
-class Hand:
+class JointController:
     """Moves joints as the handle in the view is dragged."""
 
     def __init__(self, session: Session) -> None:
@@ -178,7 +179,7 @@ class Hand:
         self._take(edits)
 
     def release(self) -> None:
-        """Show what the edits say again."""
+        """End the preview: the edits are shown again."""
         if not self._holds:
             self._session.state.moved = None
 

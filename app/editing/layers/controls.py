@@ -58,7 +58,7 @@ def _choose(session: Session, row: int) -> None:
 
 
 def _about(state: State) -> str:
-    """Say what the chosen layer does."""
+    """Describe the chosen layer."""
     layer = _layer(state)
     if layer is None:
         return ABOUT
@@ -72,7 +72,7 @@ def _about(state: State) -> str:
 
 
 def _sets(name: str) -> Any:
-    """Return what changes a field of the chosen layer by the value of a control."""
+    """Return an action that sets a field of the chosen layer."""
 
     def act(session: Session, value: Any) -> None:
         if session.state.layer is not None:
@@ -103,7 +103,7 @@ def _delete(session: Session) -> None:
 
 
 def _adds(content: Any) -> Any:
-    """Return what adds a layer over the selection, or over everything."""
+    """Return an action that adds a layer over the selection, or over everything."""
 
     def act(session: Session) -> None:
         chosen = selected(session.state)

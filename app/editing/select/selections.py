@@ -13,8 +13,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.histogram import in_bars
 from ...looks.selection import neighbours_of
-from ...messages.received import Lasso, PickStrongest
-from ...messages.sent import Through
+from ...server.protocol.received import Lasso, PickStrongest
+from ...server.protocol.sent import Through
 from ..brush.strokes import clear_selection, invert_selection, select
 from ..compute.condition import vertices_where
 
@@ -155,7 +155,7 @@ def finding_vertices(state: State) -> NDArray[np.intp]:
 
 
 def select_finding(session: Session) -> None:
-    """Select what the finding that is looked at names: vertices, and those of faces."""
+    """Select the vertices and the corners of faces that the chosen finding names."""
     state = session.state
     chosen = np.zeros(len(state.rig.mesh.vertices), np.bool_)
     chosen[finding_vertices(state)] = True

@@ -12,7 +12,7 @@ from cutcell_viewers.short_names import short_names
 from ...document.selection import selected
 from ...document.session import Session
 from ...document.state import State
-from ...messages.received import EditWeight, Message, Page, PickVertex, Sort
+from ...server.protocol.received import EditWeight, Message, Page, PickVertex, Sort
 from .operations import edit
 
 ROWS = 20

@@ -17,7 +17,7 @@ from cutcell.errors import MeshError
 from cutcell.rig import Rig, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
 
-from ..compute import joint_mirror
+from ..compute.mirror import joint_mirror
 from .closest import closest_on_triangle
 
 NEAR = 0.02

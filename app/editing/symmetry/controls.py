@@ -23,7 +23,7 @@ AUTOMATIC, NOBODY = "By name and position", "None"
 
 
 def about(state: State) -> str:
-    """Return what the map shows, and which joints have no partner."""
+    """Describe the map, and list joints without a partner."""
     image = state.mirror_image
     if image is None:
         return "The mirror image is computed."

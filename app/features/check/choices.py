@@ -1,10 +1,11 @@
 """State of the panel Check: findings, and repairs."""
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import param
 
-from cutcell.diagnosis import Finding
+from cutcell.diagnosis import TITLES, Finding
 from cutcell.editing import Edits
 
 from ...document.state import Panel
@@ -12,6 +13,22 @@ from ...editing.compute.stack import part_layers
 
 EXPORT = "export:"
 """Before the code of a finding about the weights that an export contains."""
+
+OF_WEIGHTS = ("stretched-surface",)
+"""Findings of weights: those of a binding are checked in what an export contains."""
+
+
+@dataclass(frozen=True)
+class WarningLink:
+    """A warning, and the finding that shows its elements as `Choices.finding` has it, or empty."""
+
+    text: str
+    code: str = ""
+
+    @property
+    def label(self) -> str:
+        """The label of the button that leads there."""
+        return f"Show: {TITLES[self.code.removeprefix(EXPORT)].lower()}" if self.code else ""
 
 
 PANEL = Panel(
@@ -28,7 +45,10 @@ class Choices(param.Parameterized):
     """The findings, and which of them is looked at."""
 
     if TYPE_CHECKING:
+        binding: Any
         edits: Edits
+        graph: Any
+        rig: Any
 
     diagnosis: Any = param.Parameter(None, doc="The cutcell.Diagnosis, or None so far.")
     export_diagnosis: Any = param.Parameter(
@@ -52,3 +72,18 @@ class Choices(param.Parameterized):
         code = self.finding.removeprefix(EXPORT)
         diagnosis = self.diagnosis if code == self.finding else self.export_diagnosis
         return diagnosis[code] if diagnosis is not None and code in diagnosis else None
+
+    @property
+    def warnings(self) -> list[WarningLink]:
+        """The warnings about the character and its weights."""
+        if self.graph is None:
+            return []
+        of_binding = self.binding.warnings if self.binding else ()
+        links = [
+            WarningLink(text, getattr(text, "code", ""))
+            for text in (*self.rig.warnings, *of_binding)
+        ]
+        return [
+            replace(link, code=EXPORT + link.code) if link.code in OF_WEIGHTS else link
+            for link in links
+        ]

@@ -253,7 +253,7 @@ def _joints(rig: Rig, joints: list[int]) -> str:
 
 
 def _repairs(state: State) -> list[Any]:
-    """Return what can be repaired at once, and what was repaired: before and after."""
+    """Return the repair of all findings, and the repairs that were made: before and after."""
     findings = () if state.diagnosis is None else state.diagnosis.findings
     able = [one.code for one in findings if one.repair and one.code not in _in_vain(state)]
     rows: list[Any] = []

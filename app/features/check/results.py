@@ -29,6 +29,7 @@ def watch(session: Session) -> None:
     """Discard results of another character, and show the finding of an address."""
     follow = session.state.param.watch
     follow(lambda *events: session.state.param.update(finding=""), "rig")
+    follow(lambda *events: _show_finding(session), "finding", onlychanged=False)
     follow(lambda *events: _arrived(session, ""), "diagnosis")
     follow(lambda *events: session.state.param.update(tried=None),
            ["rig", "edits", "finding", "panel"])  # fmt: skip
@@ -74,19 +75,11 @@ def _reusable(state: State) -> BoneDistances | None:
 
 
 def look_at(session: Session, code: str) -> None:
-    """Mark what a finding names, and go there; an empty code, or the same again, leaves it."""
+    """Mark the elements of a finding and aim the camera; the same code again leaves it."""
     state = session.state
     if code == state.finding:
         code = ""
     state.finding = code
-    _show_finding(session)
-
-
-def go_to(session: Session, code: str) -> None:
-    """Open the panel that shows a finding and its advice."""
-    state = session.state
-    state.param.update(panel="check", finding=code)
-    _show_finding(session)  # where the check is not done yet, it is looked at then
 
 
 def _show_finding(session: Session) -> None:

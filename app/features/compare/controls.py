@@ -4,8 +4,9 @@ from typing import Any
 
 from ...document.side_by_side import FEWEST_VIEWS, MAX_VIEWS, listed
 from ...document.state import State
+from ...looks.controls import REST
 from ...looks.methods import title_of
-from ...looks.pose_controls import REST, play
+from ...looks.pose import play
 from ...widgets import controls as ui
 from . import results as actions
 from .disagreement.controls import DISAGREEMENT
@@ -24,7 +25,7 @@ COLUMNS = [
 
 
 def about(state: State) -> str:
-    """Return what the columns of errors are measured against."""
+    """Name the reference of the columns of errors."""
     if state.rig is not None and state.rig.weights is None:
         return "The file has no weights to compare with."
     return "L1 (weights) and mm (motion): errors against the original weights."

@@ -1,4 +1,4 @@
-"""Computes what is compared: one method after the other, none stopped by another's failure."""
+"""Results of the compared methods, one after the other; a failure stops no other method."""
 
 import logging
 from dataclasses import dataclass
@@ -98,7 +98,7 @@ def add(session: Session) -> None:
 
 
 def cancel(session: Session) -> None:
-    """Stop what is being computed; it and what waits are taken off the page."""
+    """Stop computing; methods without a result leave the page."""
     state = session.state
     methods = [name for name in state.methods if name in state.compared or name == NOW]
     spare = [name for name in ("artist", "euclidean") if name in offered(state.rig)]
@@ -107,7 +107,7 @@ def cancel(session: Session) -> None:
 
 
 def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progress) -> Compared:
-    """Return what a method makes of a rig; a failure that it knows of is its result."""
+    """Bind a rig by a method and measure the result; an expected failure is a result."""
     progress(name, 0.0)
     if name == NOW:
         weights, seconds = binding.weights, binding.seconds

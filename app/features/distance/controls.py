@@ -2,7 +2,7 @@
 
 from ...document.session import Session
 from ...document.state import State
-from ...looks.cut_controls import CUTTING
+from ...looks.controls import CUTTING
 from ...looks.measures import MAX_MEASURES, MEASURES
 from ...widgets import controls as ui
 

@@ -9,8 +9,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.character import has_field
 from ...looks.measures import CONVERGED, method_of
-from ...messages.received import HaltWave
-from ...messages.sent import Wave
+from ...server.protocol.received import HaltWave
+from ...server.protocol.sent import Wave
 from .measures import WITH_RESOLUTION
 from .scene import farthest, wants_field
 

@@ -12,7 +12,7 @@ from ...document.framing import theme_of
 from ...document.method import GRAPH, READABLE
 from ...document.state import State
 from ...editing.binding.recovery import CHAIN
-from ...looks.cut_controls import CUTTING
+from ...looks.controls import CUTTING
 from ...widgets import controls as ui
 from .choices import LAYERS, Choices
 

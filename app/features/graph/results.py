@@ -3,7 +3,7 @@
 from ...derive.derived import Derived
 from ...derive.jobs import COMPUTING, DESCRIBING
 from ...document.method import READABLE
-from .scene import build_shown
+from ...editing.binding.bound import build_shown
 
 RESULTS = (
     Derived(

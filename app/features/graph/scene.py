@@ -3,9 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell import build_graph
-from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from cutcell.runtime.progress import Progress, silent
+from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
 from cutcell_viewers.distance_scene import distance_legend, distance_limits, file_units
@@ -72,13 +70,6 @@ def scene(state: State) -> Description:
             slab = thick[0] if name.startswith("interior") else thick[1]
             actors[name] = replace(actor, slab=slab)
     return Description(actors, cut=cut, legend=legend)
-
-
-def build_shown(inputs: tuple[Any, ...], progress: Progress = silent) -> CutCellGraph:
-    """Return the graph that `Choices.graph_inputs` describe."""
-    mesh, resolution, connectivity, threshold, orient = inputs
-    options = {"connectivity": connectivity, "winding_threshold": threshold, "orient": orient}
-    return build_graph(mesh, resolution, **options, progress=progress)
 
 
 def graph_layers(state: State) -> tuple[dict[str, Actor], Legend | None]:

@@ -1,6 +1,5 @@
 """Commands of the lesson: go to a step, answer it, press its buttons, leave."""
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -15,7 +14,7 @@ from ...document.loading import open_character
 from ...document.look import set_camera
 from ...document.opening import Opening, Request, motion
 from ...document.selection import selected
-from ...document.session import Session
+from ...document.session import BeforeLesson, Session
 from ...document.side_by_side import SINGLE, standard
 from ...document.state import State
 from ...looks.methods import shown_title, weights_of
@@ -39,16 +38,6 @@ def watch(session: Session) -> None:
     follow(lambda event: answer(session, event.new), "acted", onlychanged=False)
     follow(lambda *events: _prepare(session), "binding")
     follow(lambda *events: session.state.param.update(**unused), "step")
-
-
-@dataclass(frozen=True)
-class Before:
-    """The page from before the lesson."""
-
-    history: History
-    document: Document
-    camera: Camera | None
-    tools: dict[str, Any]
 
 
 def go(session: Session, index: int) -> None:
@@ -103,7 +92,7 @@ def answer(session: Session, value: Any) -> None:
 
 
 def offer(session: Session, index: int) -> None:
-    """Choose what a button of the step says."""
+    """Apply the choices of a button of the step."""
     state = session.state
     queries = _offers(state)
     if 0 <= index < len(queries) and state.rig is not None:
@@ -164,10 +153,10 @@ def show(
         if state.step < 0 and state.rig is not None:
             tools = {name: getattr(state, name) for name in state.tools}
             at = None if session.view.at_home else session.view.camera
-            before = partial(Before, camera=at, tools=tools)
+            before = partial(BeforeLesson, camera=at, tools=tools)
 
         def note(now: Document) -> None:
-            if before is not None:
+            if before is not None and session.history.now is not None:
                 session.before_lesson = before(session.history, session.history.now)
             session.history = History(now)
 
@@ -183,7 +172,7 @@ def show(
 
 
 def of_character(state: State, arrival: dict[str, Any]) -> dict[str, Any]:
-    """Return what an address says of the open character, as parameters of the state."""
+    """Return an address's entries for the open character, as parameters of the state."""
     names = list(state.rig.skeleton.names)
     own = ("vertex", "clip", "methods", *SINGLE, "settled", "turns")
     plain: dict[str, Any] = {name: arrival[name] for name in own if name in arrival}

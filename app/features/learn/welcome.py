@@ -6,7 +6,7 @@ import param
 
 from ...document.loading import receiver
 from ...document.session import Session
-from ...messages.received import ShowStep
+from ...server.protocol.received import ShowStep
 from ...widgets.file_drop import FileDrop
 from ...widgets.modules import script
 from .steps import go

@@ -41,7 +41,7 @@ def summary(state: State) -> str:
 
 
 def facts(state: State) -> str:
-    """Return what is known of the pair that is looked at."""
+    """Describe the chosen pair."""
     pair = state.chosen_pair
     if pair is None:
         return ""

@@ -19,9 +19,16 @@ from ...document.state import State
 from .choices import Beside, OpenedAudit
 
 
-def look_at(session: Session, opened: OpenedAudit) -> None:
-    """Look at an audit, with all that was said of its pairs since it was opened."""
-    session.state.opened = opened
+def watch(session: Session) -> None:
+    """Read the verdicts of an audit when its pairs are first looked at."""
+    session.state.param.watch(lambda event: _read_verdicts(session, event), "opened")
+
+
+def _read_verdicts(session: Session, event: Any) -> None:
+    """Add all that was said of the pairs since the server was started."""
+    opened = event.new
+    if event.old is not None or opened is None:
+        return
     try:
         verdicts = read_verdicts(opened.folder)
     except CutcellError as error:
@@ -77,7 +84,7 @@ def choose_tier(session: Session, tier: str) -> None:
 
 
 def overrule(session: Session, verdict: str) -> None:
-    """Say what the chosen pair is; an empty verdict leaves it to the figures."""
+    """Set the verdict on the chosen pair; an empty one leaves it to the figures."""
     state = session.state
     opened, pair = state.opened, state.chosen_pair
     if pair is None or opened.audit.verdict(pair) == verdict:

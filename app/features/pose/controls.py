@@ -12,7 +12,8 @@ from ...document.session import Session
 from ...document.state import State
 from ...editing.brush.controls import BRUSH
 from ...editing.select.controls import SELECTION
-from ...looks.pose_controls import REST, play
+from ...looks.controls import REST
+from ...looks.pose import play
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from . import results as actions
@@ -73,7 +74,7 @@ def _colours(state: State) -> dict[str, Any]:
 
 
 def notes_text(state: State) -> str:
-    """Return what could not be read of the materials that are seen, in sentences."""
+    """List the faults of the shown materials, in sentences."""
     if state.materials is None:
         return ""
     notes = state.materials.notes

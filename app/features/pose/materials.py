@@ -13,7 +13,7 @@ ENDED = "decoding its images came to a sudden end"
 
 
 def read(rig: Rig, progress: Progress) -> Textures | None:
-    """Return what shows a rig in its materials; images are decoded in another process."""
+    """Return the textures of a rig's materials; images are decoded in another process."""
     materials = read_materials(rig)
     if materials is None:
         return None

@@ -1,4 +1,4 @@
-"""Motions, turning by hand, and how far the two weightings are apart."""
+"""Motions, turning by controller, and how far the two weightings are apart."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ from cutcell_viewers.pose_scene import clip_in_scene
 from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
-from ...looks.pose import angles_of, clip_of, rotation_of
-from ...messages.received import Play, Turn
-from ...messages.sent import Motion
+from ...looks.pose import angles_of, clip_of, clip_part, rotation_of
+from ...server.protocol.received import Play, Turn
+from ...server.protocol.sent import Motion
 from .errors import motion_error, scene_error
 from .materials import MATERIALS
-from .scene import clip_part, has_rival
+from .scene import has_rival
 
 TURN_DEGREES = 30.0
 """How far a joint turns when a bad turn is looked at: as in the deformation error."""
@@ -23,8 +23,8 @@ TURN_DEGREES = 30.0
 
 def watch(session: Session) -> None:
     """Connect the rings and the play button of the view."""
-    hand = Hand(session)
-    session.view.listen(Turn, hand.turn)
+    controller = RingController(session)
+    session.view.listen(Turn, controller.turn)
     session.view.listen(Play, lambda message: session.state.param.update(playing=message.on))
 
 
@@ -44,7 +44,7 @@ def is_playing(state: State) -> bool:
         return False
 
 
-class Hand:
+class RingController:
     """Rotates joints as the rings on the canvas are dragged."""
 
     def __init__(self, session: Session) -> None:

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig import Clip
-from cutcell_viewers.character import body, pose_in_scene
+from cutcell_viewers.character import body
 from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import (
     error_legend,
@@ -24,13 +23,8 @@ from ...looks.character import character
 from ...looks.pose import pose_of
 from ...looks.selection import isolated, selection_marks
 from ...looks.weights import weights_look, weights_seen
-from ...messages.sent import Motion, Rings
 
 GHOST_OPACITY = 0.38
-MAX_NUMBERS = 2**22
-"""Largest motion that is sent to the browser (16 MB); longer ones are sent with fewer frames."""
-TOGETHER = 64
-"""Number of frames that are sampled at a time."""
 VIEWS = ("cutcell", "Weights from the file")
 
 
@@ -135,31 +129,3 @@ def error_limits_of(state: State, placed: np.ndarray | None) -> tuple[float, flo
         error = state.motion_error
         return error_limits([0.0 if error is None else error[2]])
     return error_limits([0.0] if placed is None else lengths_of(state, placed))
-
-
-def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> Motion | None:
-    """Return a motion as a message for the view, with a limited number of numbers."""
-    if clip is None or not len(times := clip.times):
-        return None
-    most = max(limit // max(16 * clip.joints, 1), 2)
-    if len(times) > most:
-        times = np.linspace(0, clip.duration, most)
-    matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)
-    for first in range(0, len(times), TOGETHER):
-        frames = slice(first, first + TOGETHER)
-        matrices[frames] = pose_in_scene(state.rig, clip.sample(times[frames]))
-    return {"times": times, "matrices": matrices.ravel()}
-
-
-def gizmo_part(state: State) -> Rings | None:
-    """Return the message for the rings that turn the chosen joint; None if it cannot be turned."""
-    if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
-        return None
-    rig, joint = state.rig, state.joint
-    centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]
-    return {
-        "joint": joint,
-        "joints": len(rig.skeleton.joints),
-        "centre": centre.tolist(),
-        "below": np.flatnonzero(rig.skeleton.subtree[joint]).astype(np.int32),
-    }

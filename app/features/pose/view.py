@@ -1,7 +1,7 @@
 """The motion that runs in the browser, and the rings that turn a joint."""
 
+from ...looks.pose import gizmo_part
 from .results import is_playing, motion_part, watch
-from .scene import gizmo_part
 
 __all__ = ["PARTS", "watch"]
 

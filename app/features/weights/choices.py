@@ -10,8 +10,6 @@ from ...document.method import WEIGHTS, choices_of
 from ...document.state import Panel
 from ...editing.binding.bound import MOST
 
-SHOWN = ("bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry")
-
 PANEL = Panel(
     "Weights",
     '<circle cx="12" cy="12" r="8.5"/><path d="M12 3.5v17M12 7.5h7M12 12h8.5M12 16.5h7"/>',
@@ -22,7 +20,10 @@ PANEL = Panel(
 class Choices(choices_of(WEIGHTS, max_influences=MOST)):  # type: ignore[misc]
     """Which weights are seen, and how they fall with distance."""
 
-    weights_shown: param.Selector[str] = param.Selector(default="mix", objects=list(SHOWN))
+    weights_shown: param.Selector[str] = param.Selector(
+        default="mix",
+        objects=["bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry"],
+    )
     weights_of: param.Selector[str] = param.Selector(
         default="ours",
         objects={"Current": "ours", "Original": "file"},

@@ -44,7 +44,7 @@ def _is_signed(state: State) -> bool:
 
 
 def summary(state: State) -> str:
-    """Return what there is to say of the weights in a line."""
+    """Summarize the weights in a line."""
     if state.binding is None:
         return ""
     weights = state.binding.weights

@@ -12,6 +12,8 @@ export class Fit {
   /** @param {Renderer} renderer */
   constructor(renderer) {
     this.renderer = renderer
+    this.of = []  // what the points below were projected from
+    this.points = new Float64Array(0)
   }
 
   // How far the eye must be from the target, along a direction.
@@ -42,7 +44,7 @@ export class Fit {
   eachPoint(direction, target, see) {
     const rests = this.rests()
     const of = [...direction, ...target, ...rests]
-    if (of.length !== this.of?.length || of.some((one, i) => one !== this.of[i])) {
+    if (of.length !== this.of.length || of.some((one, i) => one !== this.of[i])) {
       this.of = of
       this.points = project(rests, direction, target)
     }

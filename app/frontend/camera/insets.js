@@ -27,6 +27,8 @@ export class Insets {
     this.factor = 1  // how many times as far away as without cards
     this.observer = new ResizeObserver(() => this.make())
     this.watched = []
+    this.rests = []
+    this.framedRests = []
     const {canvas, legend, transport} = overlay
     for (const part of [canvas, legend, transport]) { this.observer.observe(part) }
   }

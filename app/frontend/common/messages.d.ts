@@ -1,4 +1,4 @@
-// Written by app/messages/typescript.py.
+// Written by app/server/protocol/typescript.py.
 type Vector = number[]
 type Announced = {name: string; size: number}  // A file that follows.
 type Camera = {position: Vector; focal_point: Vector}  // Where one looks from, and at what.
@@ -40,7 +40,7 @@ type FromBrowser =
   | {type: 'move-joint'; joint: number; position: Vector; done?: boolean}  // A joint is dragged in the scene.
   | {type: 'move-point'; name: string; position: Vector; done?: boolean}  // A point that a feature declares is dragged in the scene.
   | {type: 'move-cut'; origin: Vector; normal: Vector}  // The cutting plane is dragged.
-  | {type: 'paint'; points?: number[] | null; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
+  | {type: 'paint'; points?: number[]; mode?: string | null; first?: boolean; done?: boolean; cancelled?: boolean}  // A piece of a stroke, or its end.
   | {type: 'lasso'; vertices: number[]; mode: string}  // A line was drawn around vertices.
   | {type: 'halt-wave'; front: number}  // The wavefront is halted at a part of the greatest distance.
   | {type: 'play'; on: boolean}  // The motion is played or paused.

@@ -27,6 +27,18 @@ export class Actor {
     this.colours = new Colours(renderer.context)
     this.visible = true
     this.skinCount = 0
+    this.slab = 0
+    /** @type {any} */
+    this.look = null
+    this.count = 0
+    /** @type {Strokes | null} */
+    this.strokes = null
+    /** @type {Float32Array} */
+    this.rest = new Float32Array(0)
+    /** @type {{joints: Uint16Array, weights: Float32Array, count: number} | null} */
+    this.skin = null
+    /** @type {{joints: Uint16Array, weights: Float32Array, count: number, unit: number} | null} */
+    this.apart = null
   }
 
   /** @param {Part} part @param {Cut | null} cut */
@@ -59,9 +71,9 @@ export class Actor {
     if ("animation" in part) { this.animation = part.animation }
     if ("clipped" in part) {
       this.clipped = part.clipped
-      this.slab = part.slab
+      this.slab = part.slab ?? 0
     }
-    if ("visible" in part) { this.visible = part.visible }
+    if (part.visible !== undefined) { this.visible = part.visible }
     this.cut(cut)
   }
 
@@ -94,7 +106,8 @@ export class Actor {
   }
 
   stroke() {
-    const {renderer, look, strokes} = this
+    const {renderer, look} = this
+    const strokes = /** @type {Strokes} */ (this.strokes)
     if (this.skin && this.drawnPose !== renderer.poseCount) {
       strokes.setPoints(this.posed())
       this.drawnPose = renderer.poseCount
@@ -165,8 +178,8 @@ export class Actor {
     this.shaded = shaded
     const arrays = [
       ...needs.by ? [["pointId", pointIds(this.rest.length / 3), 1]] : [],
-      ...needs.sets ? skinArrays("skin", skin) : [],
-      ...needs.otherSets ? skinArrays("other", apart) : [],
+      ...skin ? skinArrays("skin", skin) : [],
+      ...skin && apart ? skinArrays("other", apart) : [],
     ]
     const held = this.data.getPointData()
     for (const [name, values, numberOfComponents = 4] of arrays) {
@@ -279,11 +292,11 @@ export class Actor {
 
   // For rays: grown when first asked for, and fitted to where the points are now.
   get tree() {
-    if (this.grown?.triangles !== this.triangles) {
-      this.grown = new TriangleTree(this.rest, this.triangles)
-    }
-    this.grown.fit(this.posed())
-    return this.grown
+    const tree = this.grown?.triangles === this.triangles ? this.grown
+      : new TriangleTree(this.rest, this.triangles)
+    this.grown = tree
+    tree.fit(this.posed())
+    return tree
   }
 
   remove() {

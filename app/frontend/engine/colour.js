@@ -16,6 +16,7 @@ export class Colours {
     this.gl = gl
     this.by = ""  // "values", "colors", or nothing
     this.front = ALL
+    this.limits = [0, 1]
   }
 
   setValues(values, table, limits = this.limits) {
@@ -78,6 +79,9 @@ export class Colours {
 
 // Some numbers of each point, in rows.
 export class PointTexture {
+  /** @type {any} */
+  data = null
+
   /** @param {GL} gl @param {number} unit */
   constructor(gl, unit) {
     this.gl = gl

@@ -33,7 +33,7 @@ function quaternion(pose, at) {
   }
   const [x, y, z, w] = q
   const length = Math.hypot(...q) * Math.sign([w, x, y, z].find((c) =>
-    Math.abs(c) > TIE * Math.hypot(...q)))
+    Math.abs(c) > TIE * Math.hypot(...q)) ?? 1)
   return q.map((c) => c / length)
 }
 

@@ -39,6 +39,7 @@ export class Renderer {
     this.camera = vtkCamera.newInstance()
     this.camera.setViewAngle(VIEW_ANGLE)
     this.lights = []
+    this.size = [0, 0]  // of the canvas, in pixels of the screen
     this.views = []
     /** @type {Map<string, Actor>} */
     this.actors = new Map()
@@ -122,7 +123,7 @@ export class Renderer {
     const {clientWidth: w, clientHeight: h} = this.element
     const ratio = Math.min(window.devicePixelRatio || 1, 2) * (coarse ? 0.6 : 1)
     const size = [Math.max(1, Math.round(w * ratio)), Math.max(1, Math.round(h * ratio))]
-    if (this.size?.join() === size.join()) { return }
+    if (this.size.join() === size.join()) { return }
     this.size = size
     this.gl.setSize(...size)
   }
@@ -232,6 +233,7 @@ export class Renderer {
 
   // Which view a pixel of the canvas belongs to.
   viewAt(x, y) {
+    /** @param {number[]} tile */
     const hit = ([left, top, width, height]) =>
       x >= left && x < left + width && y >= top && y < top + height
     return Math.max(this.tiles.findIndex(hit), 0)

@@ -29,9 +29,9 @@ const WIDE = `
     return thick > 0.0 ? clamp(spaced, thin, 6.0 * pixels) : 0.5 * pixels + thin;
   }
   // A stroke in a surface is seen: it is as near as the front of that surface.
-  void lift(vec3 place, float radius) {
+  void lift(vec3 centre, float wide) {
     vec3 ahead = vec3(seen[0][3], seen[1][3], seen[2][3]);
-    vec4 front = seen * vec4(place - radius * gl_Position.w / scale * ahead, 1.0);
+    vec4 front = seen * vec4(centre - wide * gl_Position.w / scale * ahead, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
   }`
 
@@ -58,17 +58,18 @@ const LINE = (by) => `${HEAD(by)}
     float from = p.w < least && q.w > p.w ? (least - p.w) / (q.w - p.w) : 0.0;
     float to = q.w < least && p.w > q.w ? (p.w - least) / (p.w - q.w) : 1.0;
     float t = end < 0.5 ? from : to;
-    vec4 here = mix(p, q, t), start = mix(p, q, from), stop = mix(p, q, to);
+    vec4 start = mix(p, q, from), stop = mix(p, q, to);
+    gl_Position = mix(p, q, t);
     vec2 run = (stop.xy / stop.w - start.xy / start.w) * size * 0.5;
     float far = length(run);
     vec2 way = far > 1e-4 ? run / far : vec2(1.0, 0.0);
-    float half_ = reach(here.w);
-    vec2 shift = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * half_;
-    here.xy += shift / size * 2.0 * here.w;
-    gl_Position = here;
-    if (dash == 0.0) { lift(mix(a, b, t), half_); }
+    float wide = reach(gl_Position.w);
+    vec2 aside = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * wide;
+    gl_Position.xy += aside / size * 2.0 * gl_Position.w;
+    at = mix(a, b, t);
+    if (dash == 0.0) { lift(at, wide); }
     shown = mix(valueOf(int(ends.x)), valueOf(int(ends.y)), t);
-    at = mix(a, b, t); along = length(b - a) * t; across = vec2(side, half_); away = hazy(here.w);
+    along = length(b - a) * t; across = vec2(side, 0.0); away = hazy(gl_Position.w);
   }`
 
 // A line of one pixel, for a machine that draws in software while something changes.
@@ -87,15 +88,14 @@ const POINT = (by) => `${HEAD(by)}
   out vec3 shown, at; out vec2 across; out float along, away;
   void main() {
     int ends = int(ends_(which()).x), k = corner();
-    vec2 aside = vec2(k & 1, k >> 1) * 2.0 - 1.0;
+    across = vec2(k & 1, k >> 1) * 2.0 - 1.0;
     at = place(ends);
     gl_Position = seen * vec4(at, 1.0);
-    float depth = gl_Position.w;
-    away = hazy(depth);
-    float half_ = reach(depth);
-    gl_Position.xy += aside * half_ / size * 2.0 * depth;
-    lift(at, half_);
-    shown = valueOf(ends); across = aside; along = 0.0;
+    away = hazy(gl_Position.w);
+    float wide = reach(gl_Position.w);
+    gl_Position.xy += across * wide / size * 2.0 * gl_Position.w;
+    lift(at, wide);
+    shown = valueOf(ends); along = 0.0;
   }`
 
 const FORMS = {
@@ -110,8 +110,7 @@ const FORMS = {
 const LIGHT = {
   plain: () => "const float light = 0.7;",
   lines: ({dashed}) => `${dashed ? "if (fract(along / dash) > gap) { discard; }" : ""}
-    float rim = abs(across.x);
-    float light = sqrt(max(1.0 - rim * rim, 0.0));`,
+    float light = sqrt(max(1.0 - across.x * across.x, 0.0));`,
   points: ({form}) => FORMS[form],
 }
 

@@ -58,8 +58,7 @@ export class TriangleTree {
     const inverse = direction.map((x) => 1 / x)
     const stack = [1]
     let best = null
-    while (stack.length) {
-      const node = stack.pop()
+    for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
       if (enters(boxes, 6 * node, origin, inverse) > (best?.far ?? Infinity)) { continue }
       if (node < first) {
         const near = [2 * node, 2 * node + 1].map((k) => enters(boxes, 6 * k, origin, inverse))

@@ -17,6 +17,12 @@ export class FlatDrawing {
   constructor(context, place) {
     this.context = context
     this.place = place
+    /** @type {Record<string, any>} */
+    this.scene = {}
+    this.colors = {}
+    this.unit = 1
+    /** @type {number[][]} */
+    this.taken = []  // by texts and the mark: boxes of pixels
   }
 
   /** @param {Record<string, any>} scene what is shown: see `scene.js` */
@@ -31,19 +37,23 @@ export class FlatDrawing {
     c.textBaseline = "middle"
     c.textAlign = "center"
     c.font = `600 ${LETTERS * scene.zoom}px Roboto, system-ui, sans-serif`
-    this.taken = []  // by texts and the mark: boxes of pixels
+    this.taken = []
     this.lines(scene.data.outline, this.colors.ink, 1.4)
     this[scene.mode]()
   }
 
   // Segments [x0, y0, x1, y1] of the section.
-  lines(segments, ...style) {
+  lines(segments, color, width, how = {}) {
     const {place} = this
     this.paths(segments.map(([x0, y0, x1, y1]) =>
-      [place.pixel([x0, y0]), place.pixel([x1, y1])]), ...style)
+      [place.pixel([x0, y0]), place.pixel([x1, y1])]), color, width, how)
   }
 
-  // Segments between pixels as one path.
+  /**
+   * Segments between pixels as one path.
+   * @param {any[]} segments @param {string} color @param {number} width
+   * @param {{alpha?: number, dash?: number[]}} [how]
+   */
   paths(segments, color, width, {alpha = 1, dash = []} = {}) {
     const {context: c} = this
     c.beginPath()

@@ -17,6 +17,7 @@ export class Paths {
     scene.hidden = false
     scene.candidate = -1  // by keys, while a step asks
     this.isNear = true
+    this.right = this.of = 0  // predictions
     this.restart()
   }
 

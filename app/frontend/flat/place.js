@@ -4,6 +4,8 @@ import {along} from "../common/vectors.js"
 
 export class FlatPlace {
   constructor() {
+    this.scale = 1
+    this.x = this.y = 0
     this.tilt = 0  // 1: as the camera of the 3D scene sees the plane
     this.project = null
     this.free = new DOMRect()

@@ -40,6 +40,7 @@ export class Rays {
     if (!this.ways[way].length) { return }
     this.way = way
     const all = runs(this.ways[way][this.index[way]])
+    /** @param {number[]} piece */
     const isInside = ([, , winding]) => isKept(winding, this.scene.tau)
     const inside = (!this.scene.asking && all.find(isInside)) || all[0]
     this.choose(this.index[way], (inside[0] + inside[1]) / 2)
@@ -113,6 +114,7 @@ export class Rays {
     if (mode === "winding") {
       const pieces = this.ways[this.way].flatMap((one) => one.pieces)
       const count = pieces.filter(([, , number]) => isKept(number, tau)).length
+      /** @param {number[]} piece */
       const textOf = ([, , number]) => windingText(number, 1)
       const along = runs(ray, textOf).map(textOf).join(", ")
       return `At the mark the winding number is ${windingText(winding)}, `

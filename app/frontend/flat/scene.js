@@ -5,7 +5,7 @@
 //   data    the section, or null while there is none
 //   mode    "rays", "winding", "graph" or "search"; "" hides the scene
 //   tau     the winding threshold
-//   colors  by name, see `features/flat/flat_scene.py`
+//   colors  by name, see `features/flat/overlay.py`
 //   task    of a step of the lesson that asks for an act: "open" while nothing may give the answer
 //           away, "done" when it is shown; else ""
 // and the host has
@@ -67,7 +67,7 @@ export function flatScene(host) {
   const work = element("div", {className: "work"}, panel, space)
   const root = element("section", {className: "flat", hidden: true}, canvas, work)
 
-  const context = canvas.getContext("2d")
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"))
   const place = new FlatPlace()
   const drawing = new FlatDrawing(context, place)
   let now = {}

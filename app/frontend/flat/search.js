@@ -72,6 +72,11 @@ export function inFront({edges, edgeKinds, lengths}, tied) {
 export class Search {
   constructor({nodes, edges, lengths, sources}) {
     this.sources = sources
+    this.queue = []  // nodes with tentative distances, the smallest first
+    this.order = []  // settled nodes
+    this.distance = new Float64Array(nodes.length)  // tentative until a node is settled
+    this.before = new Int32Array(nodes.length)
+    this.isSettled = new Uint8Array(nodes.length)
     this.near = nodes.map(() => [])
     edges.forEach(([a, b], e) => {
       this.near[a].push([b, lengths[e]])
@@ -81,12 +86,11 @@ export class Search {
   }
 
   restart() {
-    const count = this.near.length
-    this.distance = new Float64Array(count).fill(Infinity)  // tentative until a node is settled
-    this.before = new Int32Array(count).fill(-1)
-    this.isSettled = new Uint8Array(count)
-    this.order = []  // settled nodes
-    this.queue = []  // nodes with tentative distances, the smallest first
+    this.distance.fill(Infinity)
+    this.before.fill(-1)
+    this.isSettled.fill(0)
+    this.order = []
+    this.queue = []
     for (const [node, offset] of this.sources) { this.offer(node, offset, -1) }
   }
 

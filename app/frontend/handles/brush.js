@@ -23,6 +23,8 @@ export class PaintBrush {
     this.handOver = handOver
     this.changed = changed
     this.tell = tell
+    /** @type {any} */
+    this.stroke = null
     this.svg = make("svg", "handle brush-ring", overlay.root, {"aria-hidden": "true"})
     this.rings = ["halo", "ring", "ring other"].map((name) => make("path", name, this.svg))
     const on = (type, act) => overlay.canvas.addEventListener(type, (e) => act(e), {capture: true})

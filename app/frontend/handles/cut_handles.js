@@ -7,6 +7,12 @@ const ARROW = 54  // pixels from the knob that moves to the one that turns
 const TURN = 0.008  // radians a pixel
 
 export class CutHandles extends DragHandle {
+  /** @type {any} */
+  box = null
+  /** @type {any} */
+  cut = null
+  unit = 1  // pixels that a step of one is worth
+
   // `moved(cut)` hears of each plane while it is dragged; `tell` sends to the server.
   constructor(overlay, renderer, hears) {
     super("cut-handles", 70, overlay, renderer, hears)
@@ -50,7 +56,7 @@ export class CutHandles extends DragHandle {
     const inside = (at) => at[0] > 24 && at[0] < w - 24 && at[1] > 24 && at[1] < h - 24
     const middles = [[1, 0], [0, 1], [0, -1], [-1, 0]].map(([s, t]) => corner(s, t))
     const at = middles.find((place) => inside(this.renderer.project(place))) ?? origin
-    const [x, y] = this.renderer.project(at)
+    const [x, y] = this.renderer.project(at) ?? origin
     const [dx, dy] = this.step(at)
     const long = Math.max(Math.hypot(dx, dy), 0.25 * this.unit)
     const tip = [x + ARROW * dx / long, y + ARROW * dy / long]
@@ -70,8 +76,8 @@ export class CutHandles extends DragHandle {
   step(place) {
     const {renderer} = this
     const length = 0.01 * Math.max(...minus(this.box[1], this.box[0]))
-    const from = renderer.project(place)
-    const to = renderer.project(along(place, [length, this.cut.normal]))
+    const ends = [place, along(place, [length, this.cut.normal])]
+    const [from, to] = ends.map((end) => renderer.project(end) ?? [0, 0, 1])
     this.unit = 1 / renderer.pixel(from[2])
     return [(to[0] - from[0]) / length, (to[1] - from[1]) / length]
   }

@@ -44,7 +44,7 @@ export class Gizmo extends DragHandle {
 
   // Where the joint is now, and its own three axes.
   frame(pose) {
-    const {joint, centre} = this.part
+    const {joint, centre} = /** @type {NonNullable<typeof this.part>} */ (this.part)
     if (!pose) { return {centre, axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]} }
     const m = pose.subarray(16 * joint, 16 * joint + 12)
     const axes = [0, 1, 2].map((k) => unit([m[k], m[4 + k], m[8 + k]]))
@@ -85,7 +85,10 @@ export class Gizmo extends DragHandle {
     })
   }
 
-  // Where the points of a ring are seen, and in which direction from the centre they lie.
+  /**
+   * Where the points of a ring are seen, and in which direction from the centre they lie.
+   * @returns {{spoke: number[], at: any}[]}
+   */
   around(centre, axes, axis, depth) {
     const radius = RING_RADIUS * this.renderer.pixel(depth)
     const [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]]
@@ -110,7 +113,7 @@ export class Gizmo extends DragHandle {
 
   // How far the ring's point under the pointer moves on the screen for one radian.
   motionAt(centre, axes, axis, x, y) {
-    const points = this.around(centre, axes, axis, this.renderer.project(centre)[2])
+    const points = this.around(centre, axes, axis, this.renderer.project(centre)?.[2] ?? 1)
     const away = ({at}) => Math.hypot(at[0] - x, at[1] - y)
     const best = points.reduce((a, b, i) => away(b) < away(points[a]) - 0.5 ? i : a, 0)
     const count = points.length - 1
@@ -139,7 +142,7 @@ export class Gizmo extends DragHandle {
     const {base, centre, turnAxis} = this.held
     const turn = (v) => rotated(v, turnAxis, degrees * Math.PI / 180)
     const out = base.slice()
-    for (const joint of this.part.below) {
+    for (const joint of this.part?.below ?? []) {
       for (let k = 0; k < 4; k++) {
         const rows = [0, 4, 8].map((row) => 16 * joint + row + k)
         const column = rows.map((at) => base[at])

@@ -40,7 +40,7 @@ export class Lasso {
     if (this.drawn) {  // a second finger: both move the camera
       const {pointer, points} = this.drawn
       this.cancel()
-      this.handOver(pointer, onPage(this.overlay.canvas, points.at(-1)))
+      this.handOver(pointer, onPage(this.overlay.canvas, points[points.length - 1]))
       return
     }
     e.stopImmediatePropagation()
@@ -57,7 +57,7 @@ export class Lasso {
     if (!drawn || e.pointerId !== drawn.pointer) { return }
     e.stopImmediatePropagation()
     const [x, y] = within(this.overlay.canvas, e)
-    const [u, v] = drawn.points.at(-1)
+    const [u, v] = drawn.points[drawn.points.length - 1]
     if (Math.hypot(x - u, y - v) >= NEAREST) { drawn.points.push([x, y]) }
     this.draw()
   }
@@ -89,7 +89,7 @@ export class Lasso {
 /**
  * The points inside a polygon of the canvas; with triangles only those that no triangle hides.
  * @param {number[][]} polygon @param {Float32Array} points
- * @param {(point: number[]) => number[] | null} project @param {Uint32Array | null} triangles
+ * @param {(point: any) => number[] | null} project @param {Uint32Array | null} triangles
  */
 export function inside(polygon, points, project, triangles) {
   const pixels = Array.from({length: points.length / 3}, (_, i) =>

@@ -30,6 +30,7 @@ export function judge(answer, value, scores = {}) {
 
 /** How many of the answers are right, and how many have a score. @param {Step[]} steps */
 export function total(steps, answers) {
-  const scores = steps.map(({answer}, i) => judge(answer, answers[i])).filter(Boolean)
+  const scores = steps.map(({answer}, i) => judge(answer, answers[i]))
+    .filter((score) => score !== null)
   return {right: scores.filter(({right}) => right).length, of: scores.length}
 }

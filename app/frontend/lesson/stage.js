@@ -28,6 +28,7 @@ export class Stage {
   constructor(card, host) {
     this.card = card
     this.host = host
+    /** @type {LessonNow | null} */
     this.now = null
     const on = {click: () => this.blacken(false)}
     this.black = element("div", {className: "black", hidden: true, on})
@@ -51,7 +52,7 @@ export class Stage {
   }
 
   report() {
-    if (this.now.step >= 0) { this.channel.tell(this.now) }
+    if (this.now && this.now.step >= 0) { this.channel.tell(this.now) }
   }
 
   // The window of the notes asks for the step, or walks.

@@ -59,7 +59,7 @@ class LessonPage {
       "pick": ({joint}) => this.clicked("joint", joint),
       "pick-vertex": ({vertex}) => this.clicked("vertex", this.part("follows")?.[vertex]),
       "play": ({on}) => this.player.send({playing: on}),
-      "brush": (stroke) => this.paint(stroke),
+      "paint": (stroke) => this.paint(stroke),
     }), vtk, overlay)
     this.player = new Player(this.view, read)
     window.__cutcell = Object.assign(this.view, probe(this.view))
@@ -175,7 +175,7 @@ class LessonPage {
   }
 
   paint(stroke) {
-    const body = this.view.renderer.actors.get("body")
+    const body = /** @type {Actor} */ (this.view.renderer.actors.get("body"))
     this.strokes ??= new Painted(body)
     this.strokes.pass(stroke, this.record.views[this.name].messages[0].brush.radius)
     const {actors} = this.record.views[this.name].messages[Number(this.dark.matches)]

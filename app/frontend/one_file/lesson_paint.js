@@ -13,12 +13,12 @@ export class Painted {
     this.place = welded(this.points, this.count)
     this.beside = neighbours(body.triangles, this.place)
     this.painted = new Uint8Array(this.count)
-    this.before = null
+    this.before = this.painted
   }
 
   /**
    * Adds what a piece of a stroke touches: what is nearer than the radius, along the surface.
-   * @param {{points?: number[], first?: boolean, mode?: string, cancelled?: boolean}} stroke
+   * @param {{points?: number[], first?: boolean, mode?: string | null, cancelled?: boolean}} stroke
    */
   pass({points = [], first, mode, cancelled}, radius) {
     if (first) { this.before = this.painted.slice() }

@@ -8,7 +8,7 @@ const TOGETHER = [["scalars", "table", "limits"], ["clipped", "slab"]]
 
 // The bytes of an element of the page.
 function unpacked(id) {
-  const text = atob(document.getElementById(id).textContent)
+  const text = atob(document.getElementById(id)?.textContent ?? "")
   const bytes = new Uint8Array(text.length)
   // Uint8Array.from takes half a second.
   for (let i = 0; i < text.length; i++) { bytes[i] = text.charCodeAt(i) }
@@ -41,14 +41,17 @@ function fresh(part, before) {
   return Object.fromEntries(names.map((name) => [name, now[name]]))
 }
 
-// What a widget of the page hears of its server.
+/**
+ * What a widget of the page hears of its server.
+ * @param {{[T in FromBrowser["type"]]?: (message: Extract<FromBrowser, {type: T}>) => void}} acts
+ */
 export function standIn(acts, rest = {}) {
   const listeners = {}
   return {
     ...rest,
     on(name, act) { listeners[name] = act },
     set(name, value) { this[name] = value; listeners[name]?.() },
-    send_msg(message) { acts[message.type]?.(message) },
+    send_msg(message) { /** @type {any} */ (acts)[message.type]?.(message) },
   }
 }
 
@@ -82,7 +85,7 @@ export class Player {
 
 /** Unpacks what a page holds, and opens it. */
 export async function unpack(open) {
-  const note = document.querySelector("p")
+  const note = /** @type {HTMLElement} */ (document.querySelector("p"))
   try {
     const trial = document.createElement("canvas").getContext("webgl2")
     if (!trial) { throw new Error("it offers no WebGL 2") }
@@ -92,7 +95,8 @@ export async function unpack(open) {
     open(scenes, reader(arrays), window.vtk)
     note.remove()
   } catch (error) {
-    note.textContent = `This browser cannot show the character: ${error.message}.`
+    const {message} = /** @type {Error} */ (error)
+    note.textContent = `This browser cannot show the character: ${message}.`
     document.body.replaceChildren(note)
     throw error
   }

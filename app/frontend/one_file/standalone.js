@@ -21,6 +21,15 @@ function post(message) {
 }
 
 class Page {
+  /** @type {HTMLButtonElement[]} */
+  tabs = []
+  joints = /** @type {any} */ (null)
+  clips = /** @type {any} */ (null)
+  blending = /** @type {any} */ (null)
+  reset = /** @type {any} */ (null)
+  axes = /** @type {any} */ (null)
+  slider = /** @type {any} */ (null)
+
   constructor(scenes, read, vtk) {
     this.scenes = scenes
     this.read = read
@@ -32,7 +41,7 @@ class Page {
     this.joint = scenes.joint
     this.vertices = read(scenes.vertices)
     this.dark = matchMedia("(prefers-color-scheme: dark)")
-    const acts = {bone: ({joint}) => this.choose(joint), close: () => this.pick(null)}
+    const acts = {pick: ({joint}) => this.choose(joint), close: () => this.pick(null)}
     this.card = standIn(acts, {facts: null})
     const overlay = new Overlay()
     const main = element("main", {}, overlay.root, inspector({model: this.card}))
@@ -41,7 +50,7 @@ class Page {
       "pick": ({joint}) => this.choose(joint),
       "pick-vertex": ({vertex}) => this.pick(vertex),
       "play": ({on}) => this.send({playing: on}),
-      "cut": (cut) => this.follow(cut),
+      "move-cut": (cut) => this.follow(cut),
     }), vtk, overlay)
     this.player = new Player(this.view, read)
     window.__cutcell = Object.assign(this.view, probe(this.view))
@@ -55,6 +64,7 @@ class Page {
         ...options.map(([value, text]) => element("option", {value}, text)))
       return made
     }
+    /** @param {string[]} view */
     const tab = ([name, text]) => button({name, on: {click: () => this.show(name)}}, text)
     this.tabs = VIEWS.map(tab)
     const indented = ([joint, depth]) => [joint, "\u2007".repeat(depth) + joints[joint].name]
@@ -193,7 +203,8 @@ class Page {
   get mark() {
     const {vertex, view, scenes} = this
     if (vertex === null) { return {} }
-    const {rest, skin: {joints, weights, count}} = view.renderer.actors.get("body")
+    const {rest, skin: {joints, weights, count}} = /** @type {any} */ (
+      view.renderer.actors.get("body"))
     const row = (values, size) => values.slice(size * vertex, size * (vertex + 1))
     const skin = {joints: row(joints, count), weights: row(weights, count), count}
     return {vertex: {...scenes.mark.actors.vertex, points: row(rest, 3), skin}}

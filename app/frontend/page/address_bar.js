@@ -44,7 +44,7 @@ export class AddressBar {
     try {
       this.history[how](this.history.state, "", this.location.pathname + address)
     } catch (error) {
-      console.info(`The address stays as it is: ${error.message}.`)
+      console.info(`The address stays as it is: ${/** @type {Error} */ (error).message}.`)
     }
     this.hasAddress = true
     this.rest()

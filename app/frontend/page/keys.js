@@ -4,11 +4,11 @@ import {button, element, elementsWithKey} from "../common/elements.js"
 import {stylesheet} from "../common/styles.js"
 
 const KEYS = [
-  ["Space", "play the motion, or halt it"],
-  ["← →", "the bone before, the next bone"],
-  ["↑ ↓", "towards the root, away from it"],
-  ["F", "look at the chosen bone; in the lesson: present it"],
-  ["Shift F", "look at the chosen bone, also in the lesson"],
+  ["Space", "play or pause the motion"],
+  ["← →", "previous, next bone"],
+  ["↑ ↓", "parent, child bone"],
+  ["F", "frame the chosen bone; in the lesson: present it"],
+  ["Shift F", "frame the chosen bone, also in the lesson"],
   ["L", "copy the link to this view"],
   ["Ctrl Z", "undo a choice"],
   ["Ctrl Shift Z", "redo"],
@@ -18,22 +18,22 @@ const KEYS = [
 ]
 const CANVAS_KEYS = [
   ["Tab", "to the canvas; then the arrows turn the view"],
-  ["+ −", "nearer, farther"],
+  ["+ −", "zoom in, out"],
   ["Shift ← →", "with Shift the arrows move it"],
   ["Home", "reset the view"],
   ["Enter", "choose the point of the body at the cross"],
 ]
 
 const BRUSH_KEYS = [
-  ["B", "take the brush, or put it down"],
+  ["B", "activate or deactivate the brush"],
   ["[ ]", "smaller, larger"],
   ["{ }", "weaker, stronger"],
   ["Enter", "in the canvas: paint at the cross"],
-  ["Esc", "put it down"],
+  ["Esc", "deactivate it"],
 ]
 const SELECTION_KEYS = [
   ["S", "choose the strongest bone under the pointer"],
-  ["Q", "take the lasso, or put it down"],
+  ["Q", "activate or deactivate the lasso"],
   ["A", "select all vertices"],
   ["Shift A", "select none"],
   ["> <", "grow, shrink the selection"],
@@ -67,7 +67,7 @@ const BRUSH_POINTER = [
 const POINTER = [
   ["drag", "turn", "drag"],
   ["right-drag", "move (or Shift and drag)", "two fingers"],
-  ["wheel", "nearer, farther", "pinch"],
+  ["wheel", "zoom", "pinch"],
   ["click", "choose a bone, or a point of the body", "tap"],
   ["double click", "reset the view", "double tap"],
 ]
@@ -100,6 +100,11 @@ const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
 export class Keys {
+  /** @type {Record<string, HTMLButtonElement>} */
+  tools = {}
+  /** @type {any} */
+  card = null
+
   /** @param {Overlay} overlay */
   constructor(overlay, {act, link, turnable, painting}) {
     this.overlay = overlay
@@ -138,7 +143,7 @@ export class Keys {
     const list = (keys) => element("dl", {}, ...keys.flatMap(([key, what]) => [
       element("dt", {}, ...key.split(" ").map((one) => element("kbd", {}, one))),
       element("dd", {}, what)]))
-    // Where fingers are all there is, keys are none.
+    // Devices with fingers alone have no keys.
     const keys = matchMedia("(any-hover: none)").matches ? []
       : [["Keys of the brush", BRUSH_KEYS], ["Keys of selections", SELECTION_KEYS],
           ["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]

@@ -5,11 +5,12 @@ const PIECE = 2 * 1024 * 1024
 
 export class Uploader {
   /** @param {Model} model @param {Record<string, (about?: any) => void>} hears */
-  constructor(model, {started = () => {}, moved = () => {}, ended}) {
+  constructor(model, {started = () => {}, moved = () => {}, ended = () => {}}) {
     this.model = model
     this.started = started
     this.moved = moved
     this.ended = ended
+    /** @type {((answer: UploadAnswer) => void)[]} */
     this.answers = []
     this.hear = (message) => {
       if (message.upload) { this.answers.shift()?.(message.upload) }
@@ -18,10 +19,10 @@ export class Uploader {
   }
 
   remove() {
-    this.model.off("msg:custom", this.hear)
+    this.model.off?.("msg:custom", this.hear)
   }
 
-  /** @param {FromBrowser} message @returns {Promise<ToBrowser["upload"]>} */
+  /** @param {FromBrowser} message @returns {Promise<UploadAnswer>} */
   ask(message) {
     return new Promise((resolve) => {
       this.answers.push(resolve)

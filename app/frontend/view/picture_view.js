@@ -48,7 +48,7 @@ export class PictureView {
     if (!message.id) { return }
     if (message.link) { this.link = message.link }
     if (message.theme) { this.overlay.theme(message.theme) }
-    if ("legend" in message) { this.overlay.showLegend(message.legend) }
+    if (message.legend !== undefined) { this.overlay.showLegend(message.legend) }
     if (message.views) {
       this.captions = message.views
       this.overlay.showViews(this.captions, this.captions.length > 1 ? this.tiles : [])

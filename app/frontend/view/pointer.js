@@ -50,7 +50,8 @@ export class Pointer {
     const at = within(this.view.overlay.canvas, e)
     const node = this.nodeAt(...at)
     if (node) {
-      this.view.model.send_msg({type: "pick-node", node: node.actor.reading.values[node.point]})
+      const numbers = node.actor.reading?.values
+      if (numbers) { this.view.model.send_msg({type: "pick-node", node: numbers[node.point]}) }
       return
     }
     const target = this.under(...at)
@@ -97,7 +98,7 @@ export class Pointer {
     }
     const target = this.view.brush.part ? null : this.under(x, y)
     if (target?.joint !== undefined) {
-      this.view.overlay.showBone(this.view.bones.names[target.joint], x, y)
+      this.view.overlay.showBone(this.view.bones?.names[target.joint] ?? null, x, y)
       return
     }
     const text = this.lineReading(x, y) ?? this.surfaceReading(x, y)

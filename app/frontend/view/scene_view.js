@@ -107,7 +107,7 @@ export class SceneView {
       renderer.haze = between(message.theme.top, message.theme.bottom)
     }
     if ("dark" in message) { remember("cutcell dark", message.dark ? "1" : "0") }
-    if ("legend" in message) { this.overlay.showLegend(message.legend) }
+    if (message.legend !== undefined) { this.overlay.showLegend(message.legend) }
     if ("rendered" in message) {
       this.rendered.turn(message.rendered)
       this.surroundings.keys.press("rendered", message.rendered)
@@ -130,8 +130,8 @@ export class SceneView {
     if ("images" in message) { renderer.images.set(message.images) }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of Object.entries(message.actors ?? {})) {
-      if (!renderer.actors.has(name)) { renderer.actors.set(name, new Actor(renderer)) }
-      const actor = renderer.actors.get(name)
+      const actor = renderer.actors.get(name) ?? new Actor(renderer)
+      renderer.actors.set(name, actor)
       actor.update(part, this.cut)
       if ("animation" in part) { actor.setFront(this.animation.front) }
     }
@@ -139,7 +139,7 @@ export class SceneView {
       const {start, end, joint, names} = message.bones
       this.bones = {start: [...start], end: [...end], joint: [...joint], names}
     }
-    if ("gizmo" in message) { this.gizmo.show(message.gizmo) }
+    if (message.gizmo !== undefined) { this.gizmo.show(message.gizmo) }
     // While a ring is dragged the hand is ahead of the server.
     if ("pose" in message && !this.gizmo.held) { this.pose = message.pose && plain(message.pose) }
     if ("blending" in message) { this.blending = message.blending }

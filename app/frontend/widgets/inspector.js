@@ -204,8 +204,19 @@ function vertexCard(model, facts) {
 
 /** @param {{model: Model}} widget */
 export function render({model}) {
-  const draw = () => model.facts && (model.facts.node === undefined ? vertexCard : nodeCard)(
-    model, model.facts)
+  const places = new Map()  // of the boxes: they stay, whichever weight is the largest now
+  let vertex = null
+  const inPlace = (facts) => {
+    if (facts.vertex !== vertex) { places.clear(); vertex = facts.vertex }
+    const placeOf = ({joint}) => {
+      if (!places.has(joint)) { places.set(joint, places.size) }
+      return places.get(joint)
+    }
+    facts.offered?.forEach(placeOf)
+    return {...facts, offered: facts.offered?.toSorted((a, b) => placeOf(a) - placeOf(b))}
+  }
+  const draw = () => model.facts && (model.facts.node === undefined
+    ? vertexCard(model, inPlace(model.facts)) : nodeCard(model, model.facts))
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
   }

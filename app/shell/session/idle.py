@@ -1,7 +1,7 @@
 """Message to the browser when no work is left: tests wait for it before they look."""
 
 from ...document.session import Session
-from ...messages.received import AskIdle
+from ...server.protocol.received import AskIdle
 
 
 def watch(session: Session) -> None:

@@ -16,8 +16,8 @@ from ...document.loading import travel
 from ...document.look import set_camera
 from ...document.session import Session
 from ...features import FEATURES
-from ...features.pairs import results as pairs
-from ...messages.received import Act
+from ...looks.pose import play
+from ...server.protocol.received import Act
 
 NEAR = 0.3
 """How much is seen around a bone that is framed, at least, of the character's longest side."""
@@ -29,14 +29,15 @@ def watch(session: Session) -> None:
 
 
 def act(session: Session, name: str) -> None:
-    """Do what a key or a button says."""
-    action = KEYS.get(name)
+    """Run the action of a key or a button."""
+    of_panel = FEATURES[session.state.panel].keys
+    action = of_panel.get(name) or KEYS.get(name)
     if action is not None and session.state.rig is not None:
         action(session)
 
 
 def reset(session: Session) -> None:
-    """Choose what one begins with, at rest, on the panel that is open."""
+    """Reset all choices to their defaults, at rest, on the open panel."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     with batch_call_watchers(state):
@@ -45,24 +46,10 @@ def reset(session: Session) -> None:
     session.view.send(home=True)
 
 
-def play(session: Session) -> None:
-    """Play the motion, or halt it; on the panel where things move."""
-    state = session.state
-    if state.bare:
-        return
-    if not state.moving or not state.open_panel.poses:
-        panel = state.panel if state.panel == "compare" else "pose"
-        state.param.update(panel=panel, moving=True, playing=True)
-    else:
-        state.playing = not state.playing
-
-
 def step(session: Session, count: int) -> None:
-    """Choose the next joint of the list, or the one before; of an audit, the next pair."""
+    """Choose the next joint of the list, or the one before."""
     state = session.state
-    if state.panel == "pairs":
-        pairs.step(session, count)
-    elif not state.bare:
+    if not state.bare:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
 
@@ -96,6 +83,7 @@ def toggle_rendered(session: Session) -> None:
 
 
 KEYS: dict[str, Callable[[Session], Any]] = {
+    **{name: act for feature in FEATURES.values() for name, act in feature.keys.items()},
     "undo": partial(travel, by=-1),
     "redo": partial(travel, by=1),
     "reset": reset,
@@ -108,5 +96,3 @@ KEYS: dict[str, Callable[[Session], Any]] = {
     "child": to_child,
 }
 """By their names in `frontend/page/keys.js`."""
-for feature in FEATURES.values():
-    KEYS |= feature.keys

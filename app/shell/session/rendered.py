@@ -10,7 +10,7 @@ from cutcell_viewers.process import DrawingProcess
 from cutcell_viewers.tiles import Tile
 
 from ...document.session import Session
-from ...messages.received import DrawFrame
+from ...server.protocol.received import DrawFrame
 from .export import Seen
 
 PROCESS = DrawingProcess()
@@ -57,7 +57,7 @@ def _frame_options(message: DrawFrame) -> dict[str, Any]:
         "camera": camera,
         "size": size,
         "tiles": tuple(tiles),
-        "page_height": size[1] / ratio,
+        "page_height": max(height, 1.0),
         "fine": message.fine,
     }
 

@@ -16,7 +16,7 @@ from ...document.session import Session
 from ...document.state import State
 from ...features import FEATURES
 from ...features.scenes import resolve
-from ...messages.received import MovePoint
+from ...server.protocol.received import MovePoint
 
 SCENE = "scene"
 HANDLES = {name: one for feature in FEATURES.values() for name, one in feature.handles.items()}

@@ -7,8 +7,9 @@ import pytest
 
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
 from cutcell.errors import SkeletonError
-from cutcell_app.editing.compute import Brush, joint_mirror, paint_weights
-from cutcell_app.editing.compute.stroke import PaintSurface, Stroke
+from cutcell_app.editing.compute.brush import paint_weights
+from cutcell_app.editing.compute.mirror import joint_mirror
+from cutcell_app.editing.compute.stroke import Brush, PaintSurface, Stroke
 
 CELLS, WIDE = 20, 4
 GAP = 0.06

@@ -6,7 +6,7 @@ import pytest
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.errors import SkeletonError
-from cutcell_app.editing.compute import joint_mirror
+from cutcell_app.editing.compute.mirror import joint_mirror
 from tests.meshes import box
 
 

@@ -12,12 +12,13 @@ from panel.io.resources import DIST_DIR
 
 from cutcell_app.features.inspector.facts import NO_WEIGHT
 from cutcell_app.features.pose.controls import RING_COLORS
-from cutcell_app.messages.typescript import DECLARATIONS, typescript
+from cutcell_app.server.protocol.typescript import DECLARATIONS, typescript
 from cutcell_app.shell.page import NARROW
 from cutcell_app.shell.theme import NARROW as NARROW_MEDIA
 from cutcell_app.shell.theme import SHEET
 from cutcell_app.widgets.modules import FOLDER, head, names, script, style
 from cutcell_app.widgets.view import SceneView
+from cutcell_viewers import strokes
 from cutcell_viewers.camera import FRONT, VIEW_ANGLE
 from cutcell_viewers.palette import BODY
 from tests.conftest import ROOT
@@ -72,7 +73,7 @@ def test_no_folder_of_scripts_has_more_than_fifteen_entries():
 
 
 def test_the_types_of_messages_are_those_that_are_declared():
-    command = "python -m cutcell_app.messages.typescript"
+    command = "python -m cutcell_app.server.protocol.typescript"
     assert DECLARATIONS.read_text() == typescript(), f"messages.d.ts is stale: run {command}"
 
 
@@ -89,3 +90,24 @@ def test_what_both_sides_draw_with_is_the_same():
     assert constant("one_file/standalone.js", "LEAST") == NO_WEIGHT
     assert NARROW_MEDIA.endswith(constant("page/mui.js", "NARROW"))
     assert f"max-width: {NARROW - 0.05:.2f}px" in NARROW_MEDIA
+
+
+OWN = re.compile(r"\w+MC\b|^(in|out) |^vec3 centre|^away|^if \(dash")
+"""What each side writes in its own way: how it reads points, and what it leaves out."""
+
+
+def statements(shader):
+    """Return the statements of a shader, by the names that both sides have."""
+    shader = shader.replace("MCDCMatrix", "seen").replace("cornerMC *", "across *")
+    shader = re.sub(r"stroke([A-Z])", lambda match: match[1].lower(), shader)
+    pieces = re.split('[;{}`"]', re.sub(r"//.*", "", shader))
+    return {re.sub(r"\s+", " ", piece).strip() for piece in pieces}
+
+
+def test_strokes_are_drawn_on_the_server_as_in_the_browser():
+    browser = statements((FOLDER / "engine/stroke_shaders.js").read_text(encoding="utf-8"))
+    vertex = (strokes._VERTEX, strokes._LINE, strokes._POINT)
+    server = statements(";".join((*vertex, *strokes._LIGHTS.values())))
+    shared = {statement for statement in server if not OWN.search(statement)}
+    assert len(shared) > 30
+    assert shared <= browser

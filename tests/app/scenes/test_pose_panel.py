@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 import cutcell
 from cutcell.pose import axis_rotation
 from cutcell_app.features.pose.errors import scene_error
-from cutcell_app.features.pose.scene import VIEWS, error_of, gizmo_part
+from cutcell_app.features.pose.scene import VIEWS, error_of
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
-from cutcell_app.looks.pose import angles_of, rotation_of
+from cutcell_app.looks.pose import angles_of, gizmo_part, rotation_of
 from cutcell_app.widgets.changes import changes
 from cutcell_lab.metrics import deformation_error
 from cutcell_viewers.character import pose_in_scene

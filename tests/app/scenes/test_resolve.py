@@ -8,14 +8,13 @@ import pytest
 import cutcell
 from cutcell_app.derive.memo import Memo
 from cutcell_app.document.framing import bones_part, first_joint
+from cutcell_app.editing.binding.bound import build_shown
 from cutcell_app.features.distance.scene import wants_field
 from cutcell_app.features.graph.choices import LAYERS
-from cutcell_app.features.graph.scene import build_shown
-from cutcell_app.features.pose.scene import clip_part
 from cutcell_app.features.scenes import RIGID, following, resolve
 from cutcell_app.features.state import PANELS, PageState
 from cutcell_app.looks.character import GRAPH_BODY_OPACITY, cells_of
-from cutcell_app.looks.pose import clip_of, pose_of
+from cutcell_app.looks.pose import clip_of, clip_part, pose_of
 from cutcell_viewers.palette import DARK, LIGHT
 
 

@@ -40,7 +40,7 @@ def pair_of(state: State) -> tuple[str, str]:
 
 
 def called(name: str) -> str:
-    """Return what texts call the weights of a method."""
+    """Return the name of the weights of a method in texts."""
     return {NOW: CURRENT, "artist": "the file"}.get(name, f"“{title_of(name)}”")
 
 
@@ -127,7 +127,7 @@ def _inputs(state: State) -> tuple[Any, ...] | None:
 
 
 def _source(state: State, name: str) -> Any:
-    """Return what has the weights of a method, which may be None."""
+    """Return the object that holds the weights of a method, or None."""
     return {NOW: state.binding, "artist": state.rig}.get(name) or state.compared.get(name)
 
 

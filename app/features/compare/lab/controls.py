@@ -41,7 +41,7 @@ def _runs(state: State) -> bool:
 
 
 def about(state: State) -> str:
-    """Return what the numbers are measured against."""
+    """Name the reference of the numbers."""
     if not _of_weights(state):
         text = f"The bone's distances against any angle at R = {CONVERGED}."
         return text if not ui.weightless(state) else "This bone has no distances."

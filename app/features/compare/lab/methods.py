@@ -2,7 +2,7 @@
 
 import param
 
-from ....messages.received import Message, ShowMethod
+from ....server.protocol.received import Message, ShowMethod
 from ....widgets.modules import Clickable, script
 
 

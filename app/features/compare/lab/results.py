@@ -41,7 +41,7 @@ def watch(session: Session) -> None:
 
 
 def start(session: Session) -> None:
-    """Compute what is chosen: a sweep, or errors of distances."""
+    """Compute the chosen sweep, of weights or of distances."""
     state = session.state
     if state.sweep_of == "distance":
         state.measuring_errors = True
@@ -157,7 +157,7 @@ def _point(
 
 
 def _of_bone(state: State) -> tuple[Any, ...] | None:
-    """Return what errors of distances depend on; the page's own R and connectivity are not."""
+    """Return the inputs of errors of distances, without the page's own R and connectivity."""
     if not has_field(state):
         return None
     return state.rig, state.joint, state.leaf, state.winding_threshold, state.orient

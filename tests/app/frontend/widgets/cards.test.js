@@ -38,10 +38,11 @@ test("a box keeps its focus and what is being written when its card changes", ()
   const [first, second] = root.querySelectorAll("input")
   first.focus()
   first.value = "0.5"
-  const offered = [{...BONE, weight: 0.7}, {...BONE, joint: 2, name: "spine", weight: 0.3}]
+  const offered = [{...BONE, joint: 2, name: "spine", weight: 0.7}, {...BONE, weight: 0.3}]
   model.change({facts: {...FACTS, overruled: true, offered}})
   assert.equal(document.activeElement, first)
-  assert.deepEqual([first.value, second.value], ["0.5", "0.3"])
+  assert.deepEqual([first.value, second.value], ["0.5", "0.7"])
+  assert.deepEqual([...root.querySelectorAll("input")], [first, second], "boxes stay in place")
   model.change({facts: {...FACTS, vertex: 4}})
   assert.notEqual(root.querySelector("input"), first, "the card of another vertex is another one")
 })
@@ -58,9 +59,9 @@ test("a card of a node leads to its neighbours", () => {
 })
 
 const joint = (number, level, more = {}) => ({
-  joint: number, level, name: `joint ${number}`, short: `joint ${number}`, why: "", color: "#123456",
-  control: false, locked: false, gain: 1, ours: 0.5, file: null, carries: true, changed: false,
-  doubtful: false, ...more,
+  joint: number, level, name: `joint ${number}`, short: `joint ${number}`, why: "",
+  color: "#123456", control: false, locked: false, gain: 1, ours: 0.5, file: null, carries: true,
+  changed: false, doubtful: false, ...more,
 })
 
 test("arrows walk in the tree of joints, open and close it; the focus stays", () => {

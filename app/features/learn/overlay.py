@@ -7,7 +7,7 @@ import param
 
 from ...document.session import Session
 from ...document.state import State
-from ...messages.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
+from ...server.protocol.received import Answer, ChooseValue, Message, Offer, ShowStep, Stage
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .lesson import Lesson
@@ -28,7 +28,7 @@ class LessonCard(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a person does with the card."""
+        """Run the action of a message of the card."""
         session = self._session
         match message:
             case ShowStep(step):
@@ -51,7 +51,7 @@ class LessonNotes(Widget):
     _esm = script("lesson/notes")
 
 
-def lesson_card(session: Session) -> LessonCard:
+def overlay(session: Session) -> LessonCard:
     """Return the card of a session's lesson."""
     row = Control(
         partial(LessonCard, session),

@@ -1,10 +1,10 @@
-"""Types of the messages for the browser's scripts: `python -m cutcell_app.messages.typescript`."""
+"""Types of messages for the scripts: `python -m cutcell_app.server.protocol.typescript`."""
 
 from __future__ import annotations
 
 import types
 from collections.abc import Iterator
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints, is_typeddict
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from . import received, sent
 
-DECLARATIONS = Path(__file__).parents[1] / "frontend/common/messages.d.ts"
+DECLARATIONS = Path(__file__).parents[2] / "frontend/common/messages.d.ts"
 PLAIN: dict[Any, str] = {
     Any: "any", bool: "boolean", bytes: "ArrayBuffer", float: "number", int: "number",
     str: "string", type(None): "null", sent.Numbers: "Iterable<number>", sent.Vector: "Vector",
@@ -30,7 +30,7 @@ def typescript() -> str:
 
 
 def _lines() -> Iterator[str]:
-    yield "// Written by app/messages/typescript.py."
+    yield "// Written by app/server/protocol/typescript.py."
     yield "type Vector = number[]"
     shapes = [one for module in (received, sent) for one in vars(module).values()]
     for shape in filter(is_typeddict, shapes):
@@ -44,7 +44,7 @@ def _lines() -> Iterator[str]:
 def _parts(shape: Any) -> str:
     hints = get_type_hints(shape)
     if is_dataclass(shape):
-        parts = [(one.name, one.default is not MISSING) for one in fields(shape)]
+        parts = [(one.name, one.default is not one.default_factory) for one in fields(shape)]
     else:
         parts = [(name, name in shape.__optional_keys__) for name in hints]
     return "; ".join(f"{name}{'?' * optional}: {_type(hints[name])}" for name, optional in parts)

@@ -10,7 +10,7 @@ from ...document.look import pick, pick_node, pick_vertex
 from ...document.session import Session
 from ...document.state import State
 from ...editing.correct.commands import overrule
-from ...messages.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
+from ...server.protocol.received import Close, Explain, Message, Override, Pick, PickNode, ShowPart
 from ...widgets.modules import Widget, script, style
 from ...widgets.table import Control, draw
 from .facts import node_facts, vertex_facts
@@ -28,7 +28,7 @@ class Inspector(Widget):
         self._session = session
 
     def receive(self, message: Message) -> None:
-        """Do what a button of the card says."""
+        """Run the action of a button of the card."""
         session, state = self._session, self._session.state
         match message:
             case Close():
@@ -45,7 +45,7 @@ class Inspector(Widget):
                 pick(session, joint)
 
 
-def inspector(session: Session) -> Inspector:
+def overlay(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
     row = Control(
         partial(Inspector, session),

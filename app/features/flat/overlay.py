@@ -10,7 +10,7 @@ from cutcell_viewers.palette import BONE_IDLE, GHOST, INTERIOR, MARK, SOURCE, co
 from ...document.framing import theme_of
 from ...document.session import Session
 from ...document.state import State
-from ...messages.received import Answer, Message
+from ...server.protocol.received import Answer, Message
 from ...widgets.modules import Widget, script
 from ...widgets.table import Control, draw
 
@@ -64,7 +64,7 @@ def flat_colors(state: State) -> dict[str, Any]:
     }
 
 
-def flat_scene(session: Session) -> FlatScene:
+def overlay(session: Session) -> FlatScene:
     """Return the flat scene of a session, in its place over the canvas."""
     row = Control(
         partial(FlatScene, session),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from functools import cache
 from types import UnionType
 from typing import Any, get_args, get_origin, get_type_hints, is_typeddict
@@ -59,7 +59,8 @@ def _shown(value: Any) -> str:
 def _hints(kind: Any) -> dict[str, tuple[Any, bool]]:
     """Return the type of each part, and whether a message must have it."""
     hints = get_type_hints(kind)
-    return {one.name: (hints[one.name], one.default is MISSING) for one in fields(kind)}
+    # Both defaults are MISSING where a part must be there.
+    return {one.name: (hints[one.name], one.default is one.default_factory) for one in fields(kind)}
 
 
 def _converted(value: Any, hint: Any) -> Any:

@@ -1,9 +1,12 @@
-"""Lessons whose addresses are checked as well as their keys."""
+"""What a server opens for its pages: a lesson, or an audit of pairs."""
 
 from pathlib import Path
 
+from cutcell_lab.dataset import load_audit
+
 from ..document.address import from_query
 from .learn.lesson import Lesson, read
+from .pairs.choices import OpenedAudit
 from .state import PageState
 
 
@@ -17,3 +20,8 @@ def read_checked(path: Path) -> Lesson:
     """
     state = PageState()
     return read(path, lambda query: from_query(query, state)[2])
+
+
+def open_audit(folder: Path) -> OpenedAudit:
+    """Read an audit whose pairs are reviewed."""
+    return OpenedAudit(folder, load_audit(folder))

@@ -1,8 +1,9 @@
-"""The choice of a cutting plane, and what moves and turns it."""
+"""Controls of several panels: the cutting plane, and rest after a pose."""
 
 from ..document.state import State
 from ..widgets import controls as ui
 from .cut import face_the_eye
+from .pose import rest
 
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 
@@ -24,3 +25,6 @@ CUTTING = (
     ui.caption("Or drag its handles in the scene.", visible=_cut),
 )
 """Rows: a plane, where it lies, and where a free one looks to."""
+
+
+REST = ui.button("Rest pose", rest, disabled=lambda s: not s.posed)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypedDict, dataclass_transform
 
 Vector = tuple[float, float, float]
 
 
-@dataclass_transform(frozen_default=True)
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
 class Message:
     """A message; its type is the name of its class, in lower case with hyphens."""
 
@@ -109,7 +109,7 @@ class Paint(Message):
     for. `mode` is another one than the brush's.
     """
 
-    points: list[float] | None = None
+    points: list[float] = field(default_factory=list)
     mode: str | None = None
     first: bool = False
     done: bool = False
