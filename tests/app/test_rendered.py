@@ -3,7 +3,7 @@
 import pytest
 
 from cutcell_app.document.look import pick_vertex
-from cutcell_app.messages.reading import read
+from cutcell_app.server.protocol.reading import read
 from cutcell_app.shell.session.rendered import MAX_SIDE, MAX_TILES, _frame_options
 
 
