@@ -96,7 +96,7 @@ def _described(state: State) -> str:
         moved = any(one.position is not None for one in edits.joints.values())
         changed = ["weights"]
         changed += ["skeleton"] if moved or edits.structural else []
-        changed += ["mesh"] if rig and state.own and rig.mesh is not state.own.mesh else []
+        changed += ["mesh"] if state.own is not None and rig.mesh is not state.own.mesh else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "A new GLB: mesh, skeleton, weights, clips and base colours."

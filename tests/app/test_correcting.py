@@ -24,6 +24,7 @@ from cutcell import (
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
 from cutcell.runtime.display import count
+from cutcell_app.derive.memo import Memo
 from cutcell_app.document import loading, look
 from cutcell_app.document.address import from_query
 from cutcell_app.document.document import put
@@ -172,10 +173,10 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
 def test_all_parts_start_from_the_files_weights(bound, loop):
     computed = bound.state.binding.weights
     assert "Computed" in changes_of(bound.state)
-    assert not correct.uses_file(bound)
+    assert not correct.uses_file(bound.state)
     correct.choose_file(bound, True)
     settled(bound, loop)
-    assert correct.uses_file(bound)
+    assert correct.uses_file(bound.state)
     np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
     check_bound_as_by_core(bound, arm_rig())
     assert "Computed" not in changes_of(bound.state)
@@ -192,7 +193,7 @@ def test_the_choice_above_the_export_is_made_of_what_is_corrected(bound, loop):
     assert (whose.value, whose.visible, whose.disabled) == (False, True, False)
     whose.value = True
     settled(bound, loop)
-    assert correct.uses_file(bound)
+    assert correct.uses_file(bound.state)
     correct.overrule(bound, 3, {2: 1.0})
     settled(bound, loop)
     together = len(painted_vertices(bound.state.edits))
@@ -376,8 +377,9 @@ def test_doubtful_joints_of_a_character_without_weights_are_marked_with_a_reason
             rig=replace(rig, skeleton=skeleton, weights=weights),
             binding=None,
             edits=Edits(),
+            memo=Memo(),
         )
-        rows[weights is None] = joint_rows(state, lambda name, on, make: make(), guess)
+        rows[weights is None] = joint_rows(state, guess)
     assert [row["doubtful"] for row in rows[True]] == [False, True, False]
     assert rows[True][1]["why"] == "control or bone, by its name"
     assert not any(row["doubtful"] for row in rows[False])

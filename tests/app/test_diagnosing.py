@@ -163,7 +163,7 @@ def test_what_was_repaired_is_exported(spoiled, loop, tmp_path):
     assert cutcell.diagnose(again, 16).findings == ()
     changed = np.abs(again.weights - spoiled_arm().weights).max(axis=1) > 1e-6
     assert np.flatnonzero(changed).tolist() == [0, 1, 2]
-    assert uses_file(spoiled)
+    assert uses_file(spoiled.state)
     assert changes_of(state) == "3 vertices differ from the file: Repaired 3."
     choose_file(spoiled, False)
     loop.run_until(lambda: is_current(spoiled))

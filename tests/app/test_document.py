@@ -233,11 +233,27 @@ def test_two_undos_at_once_across_characters_are_two(edited, loop):
 
 def test_an_address_brings_repairs_back(session, loop):
     session.state.param.update(resolution=12, graph_resolution=0)
-    loading.show_rig(session, faulty_arm())
+    loading.show_rig(session, faulty_arm(), "demo robot")
     loop.rest(session)
     repair(session, ["duplicate-faces"])
     loop.rest(session)
-    assert "repairs=duplicate-faces" in query(session)
+    faces, address = len(session.state.rig.mesh.faces), query(session)
+    assert "repairs=duplicate-faces" in address
+    loading.show_rig(session, faulty_arm(), "demo robot")
+    visit(session, "?resolution=12&repairs=nothing")
+    assert "repairs=nothing" in session.state.message[1]
+    visit(session, f"?{address}")
+    loop.rest(session)
+    assert len(session.state.rig.mesh.faces) == faces
+    assert session.state.repair.codes == (("duplicate-faces",),)
+
+
+def test_a_lesson_that_is_left_while_its_first_step_opens_is_left(edited, loop):
+    before = everything(edited)
+    steps.go(edited, 0)
+    steps.go(edited, -1)
+    loop.rest(edited)
+    assert same(everything(edited), before)
 
 
 def test_a_hidden_option_stays_when_another_is_cancelled(bound, loop):

@@ -298,7 +298,8 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
 
 def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
     def said(path):
-        return _described(PageState(rig=cutcell.load(path)))
+        rig = cutcell.load(path)
+        return _described(PageState(own=rig, rig=rig))
 
     assert "Only weights" in said(demo_paths[0])
     path = tmp_path / "column.obj"

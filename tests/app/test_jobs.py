@@ -308,3 +308,13 @@ def test_a_document_is_only_touched_on_its_own_thread(loop, reports):
     schedule(lambda: reports.append("b"))
     loop.run_out()
     assert reports == ["a"]
+
+
+def test_work_that_gives_up_by_itself_has_failed(session, loop):
+    def give_up(progress):
+        raise Cancelled
+
+    session.work.start("x", give_up, print)
+    loop.rest(session)
+    assert not session.state.busy
+    assert session.state.message[0] == "error"

@@ -116,6 +116,13 @@ def after(seed, waits, monkeypatch):
     return session, files
 
 
+WEIGHTS = {
+    "open_demo": 1, "open_file": 1, "open_bad_file": 1, "back": 1, "travel": 5, "repair": 1,
+    "meanwhile": 2, "template": 1, "step": 1, "render": 1, "edit": 6, "choose": 3, "cancel": 2,
+}  # fmt: skip
+"""How often a person does what, beside the others."""
+
+
 @dataclass
 class Person:
     """A person at a page, and what they have at hand."""
@@ -186,11 +193,7 @@ class Person:
 
     def act(self):
         """Do something, and wait."""
-        name = self.rng.choice(
-            ("open_demo", "open_file", "open_bad_file", "back", "travel", "travel", "repair",
-             "meanwhile", "template", "step", "render", "edit", "edit", "edit", "choose", "choose",
-             "cancel")
-        )  # fmt: skip
+        name = self.rng.choices([*WEIGHTS], [*WEIGHTS.values()])[0]
         getattr(self, name)()
         self.loop.run_until(lambda: not self.session.work.busy and not self.session.exports)
         return name

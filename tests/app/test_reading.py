@@ -13,6 +13,8 @@ from cutcell_app.document import loading
 from cutcell_app.features.learn import steps
 from cutcell_app.features.learn.lesson import Answer, Lesson, Step
 from cutcell_app.features.scenes import resolve
+from cutcell_app.features.state import PANELS
+from cutcell_app.shell.page import layout
 from cutcell_app.shell.session import view_parts
 from tests.app.test_engine import Page, doubled, powers, total
 from tests.viewers.arm import arm_rig
@@ -231,3 +233,11 @@ def test_a_scene_that_fails_is_reported_once_and_tried_again_after_a_change(
     before = session.view._next
     session.state.joint = 2
     assert session.view._next is not before
+
+
+def test_the_page_of_every_panel_reads_nothing_but_the_state(bound, loop):
+    layout(bound)
+    for panel in PANELS:
+        bound.state.panel = panel
+        loop.rest(bound)
+        assert bound.state.message is None, panel

@@ -82,7 +82,7 @@ def test_a_pair_of_joints_is_changed_undone_and_renamed(mapped, loop):
     assert state.joint == names.index("hand.L")
     set_partner(mapped, 2 + names.index("forearm.R"))
     settled(mapped, loop)
-    assert mirror_of(mapped).joint[state.joint] == names.index("forearm.R")
+    assert mirror_of(mapped.state).joint[state.joint] == names.index("forearm.R")
     assert state.mirror_image.mirror.joint[state.joint] == names.index("forearm.R")
     assert ("hand.L \u2013 forearm.R", "set", 0.0) in [tuple(row) for row in rows.rows]
     state.joint = names.index("forearm.R")
@@ -91,7 +91,7 @@ def test_a_pair_of_joints_is_changed_undone_and_renamed(mapped, loop):
     set_partner(mapped, 0)
     assert state.edits.partners == {}
     set_partner(mapped, 1)
-    assert mirror_of(mapped).joint[state.joint] == -1
+    assert mirror_of(mapped.state).joint[state.joint] == -1
 
 
 def test_before_a_character_is_there_no_pairs_are(session):

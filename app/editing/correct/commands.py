@@ -17,6 +17,7 @@ from ...document.document import put
 from ...document.edits import renamed, tidy
 from ...document.method import chosen_by, stored_method
 from ...document.session import Session
+from ...document.state import State
 from ...files.receive import safe_name
 from ..compute import stack
 
@@ -136,9 +137,9 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
     state.layer = place
 
 
-def uses_file(session: Session) -> bool:
+def uses_file(state: State) -> bool:
     """Return whether the layers begin from the file's weights."""
-    return bool(session.state.edits.base == "file")
+    return bool(state.edits.base == "file")
 
 
 def choose_file(session: Session, from_file: bool) -> None:

@@ -10,7 +10,6 @@ from cutcell_viewers.camera import Camera
 
 from ...document.address import camera_of, from_query
 from ...document.document import Document, History
-from ...document.loading import open_character
 from ...document.look import set_camera
 from ...document.opening import Opening, Request, motion
 from ...document.selection import selected
@@ -53,15 +52,21 @@ def go(session: Session, index: int) -> None:
 def leave(session: Session) -> None:
     """End the lesson, and restore the character, the choices, the tools and the camera.
 
-    A character that a person opened during the lesson stays, with its choices.
+    A character that a person opened during the lesson stays, with its choices; one that a step is
+    opening is not opened any more.
     """
+    session.tasks.add(Opening(session, partial(_leave, session)))
+
+
+def _leave(session: Session) -> Request | None:
+    """Return what restores the page; where its character stays, leave at once."""
     state, step = session.state, session.state.lesson_step
     before = session.before_lesson
     of_lesson = step.characters if step else []
     if before is None or session.source not in (before.document.source, *of_lesson):
         session.before_lesson = None
         state.param.update(step=-1, staged=False)
-        return
+        return None
 
     def note(now: Document) -> None:
         session.history, session.before_lesson = before.history, None
@@ -70,10 +75,10 @@ def leave(session: Session) -> None:
     def restore_tools() -> None:
         state.param.update(**before.tools)  # a selection counts on its own mesh only
 
-    open_character(session, Request(
+    return Request(
         before.document.source, document=before.document, camera=before.camera,
         arrival={"step": -1, "stage": False}, note=note, then=restore_tools,
-    ))  # fmt: skip
+    )  # fmt: skip
 
 
 def answer(session: Session, value: Any) -> None:

@@ -86,7 +86,7 @@ def choose(session: Session, choices: dict[str, Any]) -> None:
     try:
         with batch_call_watchers(state):
             state.param.update(**choices)
-            if uses_file(session):
+            if uses_file(state):
                 choose_file(session, False)
                 state.message = ("info", "The base is Computed now, so that the setting is seen.")
     except ValueError:
