@@ -15,8 +15,8 @@ import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
 from cutcell_app.document.framing import camera_part
-from cutcell_app.features.pose.scene import clip_part
 from cutcell_app.features.state import PageState
+from cutcell_app.looks.pose import clip_part
 from cutcell_app.widgets.view import SceneView
 from cutcell_lab.benchmarks.shapes import chain
 from cutcell_viewers.camera import framing
