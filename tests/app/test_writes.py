@@ -1,6 +1,7 @@
 """No message to the browser stays on the server."""
 
 import asyncio
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
@@ -43,6 +44,12 @@ def connection(monkeypatch):
     return Connection()
 
 
+def run(coroutine):
+    """Run a coroutine in a thread: a browser's loop may run in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(asyncio.run, coroutine).result()
+
+
 def test_a_message_that_comes_when_a_write_ends_is_written(connection):
     patch_panel_dispatch()
     socket, doc = connection._socket, Document()
@@ -58,7 +65,7 @@ def test_a_message_that_comes_when_a_write_ends_is_written(connection):
         socket.writes[1].set_result(None)
         await asyncio.sleep(0.01)
 
-    asyncio.run(page())
+    run(page())
     assert doc not in document._WRITE_MSGS
     assert doc not in document._WRITE_BLOCK, "later ones are written at once"
 
@@ -73,5 +80,5 @@ def test_a_browser_that_leaves_between_two_parts_of_a_message_is_no_error(connec
     monkeypatch.setitem(document.extra_socket_handlers, Socket, leave)
     document._WRITE_MSGS[doc] = {connection: ["first"]}
     document._WRITE_BLOCK[doc] = True
-    asyncio.run(document._dispatch_msgs(doc))
+    run(document._dispatch_msgs(doc))
     assert doc not in document._WRITE_BLOCK, "later ones are written at once"

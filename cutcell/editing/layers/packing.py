@@ -45,6 +45,8 @@ def _values(value: Any) -> list[Any]:
 def _same(a: Any, b: Any) -> bool:
     if isinstance(a, csr_array) and isinstance(b, csr_array):
         return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in SPARSE_ARRAYS)
+    if a is None or b is None:
+        return a is b
     return np.array_equal(a, b) if isinstance(a, np.ndarray) else a is b or bool(a == b)
 
 

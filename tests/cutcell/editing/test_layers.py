@@ -350,3 +350,12 @@ def test_strengths_of_a_mask_are_shares():
 def test_a_side_that_is_taken_needs_a_mirrored_mesh():
     with pytest.raises(cutcell.MeshError, match="is not mirrored"):
         bound(WORM, Layer(Mirrored("left")))
+
+
+@pytest.mark.parametrize("others", [[0, 1], [0]])
+def test_a_mask_of_all_differs_from_one_of_some(others):
+    some = Mask(vertices=others)
+    assert some != Mask()
+    assert Mask() != some
+    assert Layer(Locked(["head"]), some) != Layer(Locked(["head"]))
+    assert Layer(Locked(["head"])) != Layer(Locked(["head"]), some)
