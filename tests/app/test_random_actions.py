@@ -277,7 +277,7 @@ def person(monkeypatch, tmp_path, loop, request):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("person", "actions"),
-    [((1,), 40), *(pytest.param((seed,), 2000, marks=pytest.mark.nightly) for seed in range(2, 7))],
+    [((1,), 40), *(pytest.param((seed,), 200, marks=pytest.mark.nightly) for seed in range(2, 7))],
     indirect=["person"],
 )
 def test_page_file_command_and_address_always_say_the_same(person, actions):
