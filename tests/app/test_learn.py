@@ -122,6 +122,7 @@ def test_an_answer_is_kept_and_the_camera_with_it(session, loop):
     assert session.view.camera == arrival_camera(1)
     go(session, FALLOFF)
     go(session, DIAMONDS)
+    assert state.answers == {DIAMONDS: "They become rounder"}
     assert state.resolution == 128, "an answered step stays revealed"
     assert seen_from(session) == camera_of(LESSON[DIAMONDS])
 

@@ -154,6 +154,7 @@ def show(
             arrival.pop(name, None)
         if step is not None:
             arrival["step"] = step
+            arrival |= {"answer": state.answers[step]} if step in state.answers else {}
         before = None
         if state.step < 0 and state.rig is not None:
             tools = {name: getattr(state, name) for name in state.tools}
