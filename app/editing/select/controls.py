@@ -73,7 +73,7 @@ def _is_bone(state: State) -> bool:
 
 WEIGHT_SCALE = ui.column(
     ui.choice("weight_scale"),
-    ui.select("colormap", "Colour map"),
+    ui.select("colormap", "Colour map", margin=(10, 0, 4, 0)),
     ui.slider("weight_limit", format="0.000", visible=lambda s: s.weight_scale == "limit"),
     ui.switch("weight_outline"),
     visible=_is_bone,

@@ -41,7 +41,7 @@ CONTROLS = ui.column(
             ui.choice("cut_face", visible=lambda s: s.cut_axis not in ("auto", "off")),
             visible=_one,
         ),
-        ui.select("colormap", "Colour map"),
+        ui.select("colormap", "Colour map", margin=(10, 0, 4, 0)),
         top=8,
     ),
     ui.section(

@@ -107,7 +107,7 @@ CONTROLS = ui.column(
             visible=_whole,
         ),
         ui.choice("edge_colors", visible=_whole),
-        ui.select("colormap", "Colour map", visible=_has_field),
+        ui.select("colormap", "Colour map", visible=_has_field, margin=(10, 0, 4, 0)),
         ui.caption(
             "The chosen bone carries no weight, so no distance begins at it.",
             visible=lambda s: s.edge_colors == "distance" and _whole(s) and ui.weightless(s),
