@@ -21,7 +21,7 @@ def test_exports_films_and_findings_come_though_weights_are_computed(visit, tmp_
 
     visit.page.on("download", save)
     visit.page.evaluate(GO, "?rig=robot&resolution=160")
-    visit.page.wait_for_function("location.search.includes('resolution=160')")
+    visit.page.wait_for_function("location.search.includes('bone=')")  # the character is open
     visit.button("Export GLB").click()
     visit.button("Image, video").click()
     visit.page.get_by_role("menuitem", name="Turntable (GIF)").click()

@@ -29,7 +29,6 @@ def test_what_is_seen_in_a_comparison_is_mended(visit):
     visit.open(SOURCE)
     visit.panel("Compare")
     box(visit, "cutcell (animation)").uncheck()
-    visit.settle()  # its answer has the other boxes as they were
     box(visit, "Current weights").check()
     box(visit, "Euclidean").uncheck()
     visit.button("Computed").click()
@@ -60,7 +59,6 @@ def methods_stand_side_by_side_with_their_measures(visit):
     visit.settle()
     assert captions(visit) == ["From file", "cutcell (animation)", "Euclidean"]
     box(visit, "cutcell (animation)").uncheck()
-    visit.settle()  # its answer has the other boxes as they were
     box(visit, "Current weights").check()
     measured(visit, "Current weights")
     visit.settle()

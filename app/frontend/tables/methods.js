@@ -5,11 +5,20 @@ import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("tables/methods.css")
 
+// Boxes follow what is chosen as it changes: a click stays while the answer to the one before comes.
+const follow = (chosen) => (box) => {
+  if (box && box.defaultChecked !== chosen) {
+    box.defaultChecked = chosen
+    box.checked = chosen
+  }
+}
+
 /** @param {{model: Model}} widget */
 export function render({model}) {
   const method = ({id, title, values, best, note, state, chosen, fixed}) => {
     const box = h("input", {
-      "type": model.single ? "radio" : "checkbox", "name": id, "checked": chosen, "disabled": fixed,
+      "type": model.single ? "radio" : "checkbox", "name": id, "disabled": fixed,
+      "ref": follow(chosen),
       "aria-describedby": note ? `note-${id}` : null,
       "onchange": (e) => model.send_msg({type: "show-method", id, on: e.target.checked}),
     })
