@@ -5,7 +5,7 @@ import {stylesheet} from "../common/styles.js"
 
 const styled = await stylesheet("tables/methods.css")
 
-// Boxes follow what is chosen as it changes: a click stays while the answer to the one before comes.
+// Boxes follow the choice as it changes: a click stays while the answer to the last one comes.
 const follow = (chosen) => (box) => {
   if (box && box.defaultChecked !== chosen) {
     box.defaultChecked = chosen
