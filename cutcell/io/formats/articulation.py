@@ -64,7 +64,7 @@ def rounding_notes(positions: NDArray, mesh: TriangleMesh) -> list[str]:
     lost = int(np.count_nonzero(~mesh.welded.is_whole))
     return [
         f"{lost:,} of {len(mesh.faces):,} triangles have collapsed; positions are stored in 16 "
-        "bits, which moves a vertex by up to a 4,000th of its distance from the origin. Read the "
+        "bits, which moves a coordinate by up to a 2,000th of its value. Read the "
         "original file for weights that follow its shape"
     ]
 
