@@ -19,6 +19,7 @@ from cutcell_app.features.learn.steps import (
     clickable,
     followed,
     go,
+    leave,
     named_values,
     offer,
     painted_scores,
@@ -125,6 +126,19 @@ def test_an_answer_is_kept_and_the_camera_with_it(session, loop):
     assert state.answers == {DIAMONDS: "They become rounder"}
     assert state.resolution == 128, "an answered step stays revealed"
     assert seen_from(session) == camera_of(LESSON[DIAMONDS])
+
+
+@pytest.mark.parametrize("leaves", [leave, lambda session: loading.visit(session, "?rig=biped")])
+def test_a_lesson_that_was_left_begins_anew(session, loop, leaves):
+    go(session, DIAMONDS)
+    loop.rest(session)
+    answer(session, "")
+    leaves(session)
+    loop.rest(session)
+    assert (session.state.step, session.state.answers) == (-1, {})
+    go(session, DIAMONDS)
+    loop.rest(session)
+    assert session.state.answers == {}, "the next class is asked again"
 
 
 def test_undo_in_the_lesson_ends_at_its_step(session, loop):

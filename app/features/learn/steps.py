@@ -36,7 +36,13 @@ def watch(session: Session) -> None:
     follow(lambda *events: _answer_by_click(session, "joint"), "joint")
     follow(lambda event: answer(session, event.new), "acted", onlychanged=False)
     follow(lambda *events: _prepare(session), "binding")
-    follow(lambda *events: session.state.param.update(**unused), "step")
+    follow(lambda event: _enter(session, event.new, unused), "step")
+
+
+def _enter(session: Session, step: int, unused: dict[str, Any]) -> None:
+    """Put the tools away; a lesson that is left begins anew, so that the next class is asked."""
+    answers = {} if step < 0 else session.state.answers
+    session.state.param.update(**unused, answers=answers)
 
 
 def go(session: Session, index: int) -> None:
