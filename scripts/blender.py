@@ -1,7 +1,8 @@
 """Build the extension for Blender and a static repository of it, and test it with bpy.
 
     python scripts/blender.py build [--only linux-x64]
-    python scripts/blender.py test [--bpy 4.5.15]
+    python scripts/blender.py test [--bpy 4.5.15] [OPTIONS OF PYTEST]
+    python scripts/blender.py pictures
 
 What is downloaded stays in `build/blender`. Each archive holds the glue in `blender/`, the core of
 cutcell, and wheels of its libraries for one platform and one Python; never numpy, which is
@@ -159,38 +160,45 @@ def own_platform() -> str:
     return f"{system}-{'arm64' if is_arm else 'x64'}"
 
 
+def run_in_bpy(target: Target, *command: str | Path) -> int:
+    """Run a command of Blender's Python, with a temporary home and the archive to install."""
+    tag = f"cp{target.python.replace('.', '')}.zip"
+    (archive,) = (BUILD / "repository").glob(f"*{own_platform().replace('-', '_')}-{tag}")
+    print(f"\nbpy {target.bpy}, Python {target.python}", flush=True)
+    with tempfile.TemporaryDirectory() as home:
+        environment = {
+            **os.environ,
+            "BLENDER_USER_RESOURCES": home,
+            "CUTCELL_ARCHIVE": str(archive),
+            "NUMBA_CACHE_DIR": str(BUILD / "kernels"),  # else each run compiles
+            "CUTCELL_COMMAND": str(Path(sys.executable).with_name("cutcell")),
+        }
+        python = bpy_python(target.bpy, target.python)
+        return subprocess.run([python, *command], env=environment, cwd=home).returncode
+
+
 def test(versions: list[str], arguments: list[str]) -> int:
     """Install the extension into a temporary home, for each bpy, and test it there."""
-    archives = build([own_platform()])
-    worst = 0
-    for target in TARGETS:
-        if versions and target.bpy not in versions:
-            continue
-        python = bpy_python(target.bpy, target.python)
-        tag = f"cp{target.python.replace('.', '')}"
-        (archive,) = [archive for archive in archives if archive.stem.endswith(tag)]
-        with tempfile.TemporaryDirectory() as home:
-            environment = {
-                **os.environ, "BLENDER_USER_RESOURCES": home, "CUTCELL_ARCHIVE": str(archive),
-                "CUTCELL_COMMAND": str(Path(sys.executable).with_name("cutcell")),
-            }  # fmt: skip
-            command = [python, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-rs", "--rootdir"]
-            tests = ROOT / "blender" / "tests"
-            print(f"\nbpy {target.bpy}, Python {target.python}", flush=True)
-            run = subprocess.run([*command, tests, tests, *arguments], env=environment, cwd=home)
-            worst = max(worst, run.returncode)
-    return worst
+    build([own_platform()])
+    tests = ROOT / "blender" / "tests"
+    pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-rs", "-c", os.devnull]
+    pytest += ["--rootdir", str(tests), str(tests), *arguments]
+    chosen = [target for target in TARGETS if not versions or target.bpy in versions]
+    return max(run_in_bpy(target, *pytest) for target in chosen)
 
 
 def main() -> None:
     """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("action", choices=("build", "test"))
+    parser.add_argument("action", choices=("build", "test", "pictures"))
     parser.add_argument("--only", action="append", default=[], help="a platform to build for")
     parser.add_argument("--bpy", action="append", default=[], help="a version of bpy to test with")
     options, arguments = parser.parse_known_args()
     if options.action == "build":
         build(options.only)
+    elif options.action == "pictures":
+        build([own_platform()])
+        sys.exit(run_in_bpy(TARGETS[-1], ROOT / "docs" / "blender_pictures.py"))
     else:
         sys.exit(test(options.bpy, arguments))
 
