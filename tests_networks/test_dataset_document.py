@@ -1,4 +1,4 @@
-"""The data set of docs/dataset.md for PyTorch reads what `dataset export --format parquet` writes."""
+"""The data set of docs/dataset.md reads what `dataset export --format parquet` writes."""
 
 import re
 
