@@ -119,6 +119,7 @@ def put_right(rig: cutcell.Rig) -> cutcell.Binding:
             cutcell.Layer(cutcell.Attached(), cutcell.Mask(part=7)),
             cutcell.Layer(cutcell.Smoothed(2, through=True)),
             cutcell.Layer(cutcell.Mirrored("left")),
+            cutcell.Layer(cutcell.Remapped({"Head": "Neck", "Neck": "Head"})),
             cutcell.Layer(cutcell.Locked(["Head"])),
         ],
     )

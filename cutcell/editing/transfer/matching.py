@@ -7,11 +7,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...graph import CutCellGraph
+from ...errors import WeightsError
+from ...geometry.vectors import TIE
+from ...graph import CutCellGraph, build_graph
 from ...rig import Rig, TriangleMesh
 from ...runtime.progress import Progress
 from .closest import Surface
+from .through import alternatives, landmark_distances, resolve
 
+NEAR = 0.2
+"""Part of the greatest distance within which normals need not agree."""
+RESOLUTION = 64
+"""Of the graph that distances through the body are measured in."""
 SAMPLES_PER_RADIUS = 8
 """Samples of the source along the greatest distance of a match."""
 
@@ -53,29 +60,39 @@ def match(
     welded = target.welded
     points = cube.to_unit(target.vertices[welded.first])
     radius = distance * cube.diagonal
-    count = len(points)
     rows = _welded_rows(source)
-    patch = np.zeros(len(rows), np.intp)
-    surface = Surface(
-        mesh, np.asarray(rows.any(axis=1)), patch, max(radius, MIN_SAMPLED) / SAMPLES_PER_RADIUS
+    weighted = np.asarray(rows.any(axis=1))
+    faces = mesh.faces[mesh.is_whole & weighted[mesh.faces].all(axis=1)]
+    if not len(faces):
+        raise WeightsError("no triangle of the source has weights at all corners; bind it first")
+    if graph is None:
+        graph = build_graph(source.mesh, RESOLUTION, progress=progress)
+    place = landmark_distances(graph, graph.vertex_node[mesh.first], weighted)
+    surface = Surface(mesh, faces, max(radius, MIN_SAMPLED) / SAMPLES_PER_RADIUS)
+    closest = surface.nearest(points)
+    near = NEAR * radius
+    every = alternatives(surface, points, closest, place, radius, near)
+    choice, resolved = resolve(
+        every, surface.at(place, every), surface.at(surface.mesh.points, every), welded, radius
     )
+    chosen = every.subset(choice)
     cosine = float(np.cos(np.radians(angle)))
-    matches = surface.candidates(points, welded.normals, radius, cosine, flipped)
-    chosen = matches.subset(np.append(True, np.diff(matches.point) > 0)[: len(matches.point)])
-    matched = np.zeros(count, np.bool_)
-    matched[chosen.point] = True
+    fits = _agree(surface.at(mesh.normals, chosen), welded.normals, cosine, flipped)
+    matched = (chosen.distance <= radius) & (fits | (chosen.distance <= near))
     has_match = np.bincount(welded.component, matched, welded.component.max() + 1) > 0
-    lost = np.flatnonzero(~has_match[welded.component])
-    state = np.where(matched, 0, 1).astype(np.uint8)
-    state[lost] = 2
-    away = np.full(count, np.inf)
-    away[chosen.point] = chosen.distance
-    weights = np.zeros((count, rows.shape[1]))
-    weights[chosen.point] = surface.at(rows, chosen)
-    if len(lost):
-        anywhere = surface.nearest(points[lost])
-        weights[lost], away[lost] = surface.at(rows, anywhere), anywhere.distance
-    return Matches(weights, state, away * cube.size, np.zeros(count, np.bool_))
+    state = np.where(matched, 0, np.where(has_match[welded.component], 1, 2)).astype(np.uint8)
+    away = chosen.distance * cube.size
+    return Matches(surface.at(rows, chosen), state, away, resolved)
+
+
+def _agree(
+    one: NDArray[np.float64], other: NDArray[np.float64], cosine: float, flipped: bool
+) -> NDArray[np.bool_]:
+    """Return whether normals (k, 3) are alike; one of length zero is like any."""
+    size = np.linalg.norm(one, axis=1) * np.linalg.norm(other, axis=1)
+    product = np.einsum("px,px->p", one, other)
+    product = np.abs(product) if flipped else product
+    return np.asarray(product >= cosine * size - TIE)
 
 
 def _welded_rows(source: Rig) -> NDArray[np.float64]:
