@@ -7,7 +7,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 
 from .character import armature_of, gather
-from .groups import columns_of, parent, write_weights
+from .groups import parent, write_weights
 from .job import Problem
 from .operator_base import WorkerOperator
 
@@ -66,7 +66,7 @@ class OBJECT_OT_cutcell_parent(WorkerOperator, bpy.types.Operator):
 
     def finish(self, context, arrays, result):
         character = self._character
-        write_weights(character, columns_of(arrays))
+        write_weights(character, arrays)
         parent(character)
         for part in character.parts:
             if any(modifier.type == "MIRROR" for modifier in part.object.modifiers):

@@ -41,19 +41,8 @@ class Character:
 def gather(objects, armature, needs_weights: bool = False, editable: bool = True) -> Character:
     """Return mesh objects and their armature as a character.
 
-    Parameters
-    ----------
-    objects : sequence of Object
-    armature : Object
-    needs_weights : bool
-        Whether they must have weights.
-    editable : bool
-        Whether their weights are to be changed.
-
-    Raises
-    ------
-    Problem
-        They cannot be bound; the sentence says why.
+    `needs_weights`: they must have weights. `editable`: their weights are to be changed. Raises a
+    `Problem` if they cannot be bound.
     """
     if not objects:
         raise Problem("No mesh is selected. Select meshes and their armature")
@@ -75,7 +64,7 @@ def gather(objects, armature, needs_weights: bool = False, editable: bool = True
         start = end
     arrays = skeleton | {"vertices": np.concatenate(vertices), "faces": np.concatenate(faces)}
     every = np.concatenate(stored)
-    locked = np.repeat([part.locked for part in parts], list(map(len, stored)), axis=0)
+    locked = np.repeat([part.locked & deform for part in parts], list(map(len, stored)), axis=0)
     if editable and locked.any():
         arrays |= {"stored": every, "locked": locked}
     if (deforming := np.where(deform, every, 0.0)).any():

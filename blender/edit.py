@@ -9,7 +9,7 @@ import numpy as np
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
 from .character import armature_of, deformed_meshes, gather
-from .groups import columns_of, parent, write_weights
+from .groups import parent, write_weights
 from .job import Problem
 from .operator_base import WorkerOperator
 
@@ -52,7 +52,7 @@ class OBJECT_OT_cutcell_transfer(WorkerOperator, bpy.types.Operator):
         return "transfer", arrays, options
 
     def finish(self, context, arrays, result):
-        write_weights(self._character, columns_of(arrays))
+        write_weights(self._character, arrays)
         parent(self._character)
         return f"Transferred weights to {len(self._character.parts)} meshes"
 
@@ -79,7 +79,7 @@ class OBJECT_OT_cutcell_clean(WorkerOperator, bpy.types.Operator):
     def finish(self, context, arrays, result):
         changed = np.zeros(len(self._character.arrays["vertices"]), bool)
         changed[arrays["changed"]] = True
-        write_weights(self._character, columns_of(arrays), changed)
+        write_weights(self._character, arrays, changed)
         joints = f": {', '.join(result['joints'][:5])}" if result["joints"] else ""
         return f"Removed {result['share']:.2%} of the weight at {changed.sum()} vertices{joints}"
 

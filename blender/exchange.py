@@ -12,7 +12,7 @@ import numpy as np
 from bpy.props import StringProperty
 
 from .character import deformed_meshes, gather
-from .groups import Columns, columns_of, write_weights
+from .groups import write_weights
 from .job import Problem
 from .operator_base import WorkerOperator
 
@@ -78,28 +78,19 @@ class OBJECT_OT_cutcell_take(WorkerOperator, bpy.types.Operator):
         if not self.filepath:
             raise Problem("No file is chosen")
         meshes, armature = deformed_meshes(context)
-        self._character = gather(meshes, armature)
-        return "load", {}, {"path": bpy.path.abspath(self.filepath)}
+        self._character = character = gather(meshes, armature)
+        names = {"names": character.arrays["names"]}
+        return "load", names, {"path": bpy.path.abspath(self.filepath)}
 
     def finish(self, context, arrays, result):
-        character = self._character
-        points, stored = character.arrays["vertices"], arrays["vertices"]
+        points, stored = self._character.arrays["vertices"], arrays["vertices"]
         size = np.ptp(points, axis=0).max()
         if points.shape != stored.shape or np.abs(points - stored).max() > TOLERANCE * size:
             raise Problem(
                 f"The file has {len(stored):,} vertices at other places than the selected meshes, "
                 f"which have {len(points):,}. Select the meshes that were opened in cutcell"
             )
-        column = {name: j for j, name in enumerate(arrays["names"].tolist())}
-        if missing := sorted(set(column) - set(character.bones)):
-            raise Problem(f'The armature has no bone "{missing[0]}" of the file')
-        every, empty = columns_of(arrays), (np.zeros(0, np.intp), np.zeros(0))
-        chosen = [every.of(column[b]) if b in column else empty for b in character.bones]
-        sizes = [len(vertices) for vertices, _ in chosen]
-        columns = Columns(
-            np.concatenate([weights for _, weights in chosen]),
-            np.concatenate([vertices for vertices, _ in chosen]),
-            np.concatenate([[0], np.cumsum(sizes)]),
-        )
-        write_weights(character, columns)
-        return f"Took weights of {len(column)} bones from {Path(self.filepath).name}"
+        if result["missing"]:
+            raise Problem(f'The armature has no bone "{result["missing"][0]}" of the file')
+        write_weights(self._character, arrays)
+        return f"Took weights from {Path(self.filepath).name}"

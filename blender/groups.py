@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import bpy
 import numpy as np
 
@@ -12,30 +10,10 @@ from .character import Character
 from .job import Problem
 
 
-class Columns(NamedTuple):
-    """Weights (n, j) by columns, as the worker returns them."""
-
-    data: np.ndarray
-    indices: np.ndarray
-    indptr: np.ndarray
-
-    def of(self, bone: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the vertices with weight of a bone, and these weights."""
-        entries = slice(self.indptr[bone], self.indptr[bone + 1])
-        return self.indices[entries], self.data[entries]
-
-
-def columns_of(arrays: dict[str, np.ndarray]) -> Columns:
-    """Return the weights of a result."""
-    return Columns(arrays["data"], arrays["indices"], arrays["indptr"])
-
-
-def write_weights(
-    character: Character, columns: Columns, changed: np.ndarray | None = None
-) -> None:
+def write_weights(character: Character, arrays, changed: np.ndarray | None = None) -> None:
     """Replace the weights of deforming bones; locked groups and masked vertices stay.
 
-    `changed` (n,) says which vertices of the character change; None for all.
+    `arrays` are those of `worker.sparse`; `changed` (n,) says which vertices change, None for all.
     """
     for part in character.parts:
         if len(part.object.data.vertices) != part.vertices.stop - part.vertices.start:
@@ -45,10 +23,10 @@ def write_weights(
         writable = np.ones(size, bool) if part.mask is None else part.mask
         if changed is not None:
             writable = writable & changed[part.vertices]
-        _write_part(character, part, columns, writable)
+        _write_part(character, part, arrays, writable)
 
 
-def _write_part(character: Character, part, columns: Columns, writable: np.ndarray) -> None:
+def _write_part(character: Character, part, arrays, writable: np.ndarray) -> None:
     groups, cleared = part.object.vertex_groups, np.flatnonzero(writable).tolist()
     for bone, name in enumerate(character.bones):
         if part.locked[bone] or not character.arrays["deform"][bone]:
@@ -56,11 +34,11 @@ def _write_part(character: Character, part, columns: Columns, writable: np.ndarr
         group = groups.get(name) or groups.new(name=name)
         if cleared:
             group.remove(cleared)
-        vertices, weights = columns.of(bone)
-        local = vertices - part.vertices.start
-        inside = (local >= 0) & (local < len(writable))
+        entries = slice(*arrays["indptr"][bone : bone + 2])
+        local, weights = arrays["indices"][entries] - part.vertices.start, arrays["data"][entries]
+        inside = (local >= 0) & (local < len(writable)) & (weights > 0)
         local, weights = local[inside], weights[inside]
-        keep = writable[local] & (weights > 0)
+        keep = writable[local]
         for vertex, weight in zip(local[keep].tolist(), weights[keep].tolist(), strict=True):
             group.add((vertex,), weight, "REPLACE")
 

@@ -2,24 +2,17 @@
 """Process that computes: reads requests from standard input, replies on standard output.
 
 Each request and each reply is a line of JSON; arrays go through .npz files. The process ends with
-its standard input, or after ten minutes without a request. Needs no Blender.
+its standard input. Needs no Blender.
 """
 
 from __future__ import annotations
 
 import json
-import queue
 import sys
-import threading
-import time
 import traceback
-from contextlib import suppress
 
 import numpy as np
 
-IDLE_SECONDS = 600.0
-REPORT_SECONDS = 0.05
-"""Least time between two reports of progress in one stage."""
 MAX_SHARES = 12
 """Joints in the explanation of a vertex."""
 
@@ -92,14 +85,16 @@ def save(arrays, options, progress):
 
 
 def load(arrays, options, progress):
-    """Read the weights of a file."""
+    """Read the weights of a file for bones of some names."""
     import cutcell
 
     rig = cutcell.load(options["path"])
     if rig.weights is None:
         raise cutcell.WeightsError("the file has no weights; bind the character first")
-    read = {"vertices": rig.mesh.vertices, "names": np.array(rig.skeleton.names, np.str_)}
-    return sparse(rig.weights) | read, {}
+    column = {name: j for j, name in enumerate(rig.skeleton.names)}
+    padded = np.pad(rig.weights, ((0, 0), (0, 1)))  # for bones that the file lacks
+    weights = padded[:, [column.pop(name, -1) for name in arrays["names"].tolist()]]
+    return sparse(weights) | {"vertices": rig.mesh.vertices}, {"missing": list(column)}
 
 
 TASKS = {task.__name__: task for task in (bind, clean, transfer, diagnose, save, load)}
@@ -147,13 +142,8 @@ def run(request, write):
     from cutcell.errors import CutcellError
     from cutcell.weights.warm_up import is_compiled, warm_up
 
-    last = ["", 0.0]
-
     def progress(stage, fraction):
-        now = time.monotonic()
-        if stage != last[0] or now - last[1] > REPORT_SECONDS:
-            last[:] = stage, now
-            write({"stage": stage, "fraction": fraction})
+        write({"stage": stage, "fraction": fraction})
 
     try:
         with np.load(request["input"]) as archive:
@@ -175,21 +165,12 @@ def main():
     """Run requests until standard input ends."""
     sys.path.extend(sys.argv[1:])
     replies, sys.stdout = sys.stdout, sys.stderr  # what libraries print is no reply
-    requests = queue.Queue()
-
-    def read():
-        for line in sys.stdin:
-            requests.put(line)
-        requests.put("")
 
     def write(message):
-        replies.write(json.dumps(message) + "\n")
-        replies.flush()
+        print(json.dumps(message), file=replies, flush=True)
 
-    threading.Thread(target=read, daemon=True).start()
-    with suppress(queue.Empty, BrokenPipeError):
-        while line := requests.get(timeout=IDLE_SECONDS):
-            run(json.loads(line), write)
+    for line in sys.stdin:
+        run(json.loads(line), write)
 
 
 if __name__ == "__main__":
