@@ -68,21 +68,28 @@ class WorkerOperator:
 
     def modal(self, context, event):
         """Poll the job, or cancel it."""
-        state = None
-        if event.type == "ESC" and event.value == "PRESS":
-            stop_worker()
-            self._job.close()
-            self.report({"WARNING"}, "Cancelled. Nothing was changed")
-            state = {"CANCELLED"}
-        elif event.type == "TIMER":
-            state = self._step(context)
-        elif event.type in NAVIGATION:
+        if event.type in NAVIGATION:
             return {"PASS_THROUGH"}
+        state = None
+        try:
+            if event.type == "ESC" and event.value == "PRESS":
+                stop_worker()
+                self._job.close()
+                self.report({"WARNING"}, "Cancelled. Nothing was changed")
+                state = {"CANCELLED"}
+            elif event.type == "TIMER":
+                state = self._step(context)
+        except BaseException:
+            self._end(context)
+            raise
         if state is None:
             return {"RUNNING_MODAL"}
+        self._end(context)
+        return state
+
+    def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
-        return state
 
     def _steps(self, context, wait):
         return (yield from worker().run(*self.request(context), wait))

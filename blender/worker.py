@@ -61,7 +61,7 @@ def diagnose(arrays, options, progress):
 
     rig, resolution, vertex = rig_of(arrays), options["resolution"], options["vertex"]
     findings = [
-        {"severity": finding.severity, "text": f"{finding.message}. {finding.advice}"}
+        {"severity": finding.severity, "text": f"{finding.message} {finding.advice}"}
         for finding in cutcell.diagnose(rig, resolution, progress=progress).findings
     ]
     lines = []

@@ -133,6 +133,18 @@ def test_an_ended_process_is_reported_and_the_next_job_starts_another(worker):
     steps.close()
 
 
+def test_the_first_job_says_that_it_compiles(tmp_path, monkeypatch):
+    from cutcell.weights import warm_up
+
+    monkeypatch.setattr(warm_up, "is_compiled", lambda: False)
+    monkeypatch.setattr(warm_up, "warm_up", lambda: None)
+    np.savez(tmp_path / "input.npz")
+    paths = {name: str(tmp_path / f"{name}.npz") for name in ("input", "output")}
+    messages: list[dict] = []
+    process.run({"task": "bind", "options": {}, **paths}, messages.append)
+    assert "Compiling, once" in job.STAGES[messages[0]["stage"]]
+
+
 def test_locked_groups_leave_the_rest_to_the_others():
     weights = np.array([[0.5, 0.3, 0.2], [0.0, 0.6, 0.4], [0.2, 0.2, 0.6]])
     locked = np.zeros((3, 3), bool)

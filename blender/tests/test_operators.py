@@ -4,6 +4,7 @@
 import os
 import signal
 import sys
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -224,3 +225,57 @@ def test_a_killed_worker_changes_nothing_and_the_next_job_starts_another(tube):
             pass
     assert np.array_equal(weights(mesh), before)
     assert bpy.ops.object.cutcell_parent(resolution=16) == {"FINISHED"}
+
+
+@pytest.fixture
+def modal(tube):
+    """Return what runs an operator as the window does, its reports and its events."""
+    from bl_ext.user_default.cutcell.character import gather
+    from bl_ext.user_default.cutcell.operator_base import WorkerOperator
+
+    reports, removed = [], []
+
+    class Operator(WorkerOperator):
+        bl_label = "Operator"
+        _timer = "timer"
+
+        def report(self, kind, text):
+            reports.append((*kind, text))
+
+        def request(self, context):
+            options = {"method": "animation", "options": {"resolution": 16}}
+            return "bind", gather(tube[:1], tube[1]).arrays, options
+
+        def finish(self, context, arrays, result):
+            return "Bound"
+
+    manager = SimpleNamespace(event_timer_remove=removed.append)
+    workspace = SimpleNamespace(status_text_set=lambda text: None)
+    context = SimpleNamespace(window_manager=manager, workspace=workspace)
+    operator = Operator()
+    operator._job = operator._steps(context, 0.01)
+
+    def send(kind):
+        return operator.modal(context, SimpleNamespace(type=kind, value="PRESS"))
+
+    return send, reports, removed
+
+
+def test_in_the_window_a_job_ends_with_a_message_and_without_its_timer(modal):
+    send, reports, removed = modal
+    assert send("LEFTMOUSE") == {"RUNNING_MODAL"}  # nothing can be edited meanwhile
+    assert send("MIDDLEMOUSE") == {"PASS_THROUGH"}
+    while (state := send("TIMER")) == {"RUNNING_MODAL"}:
+        pass
+    assert (state, reports, removed) == ({"FINISHED"}, [("INFO", "Bound")], ["timer"])
+
+
+def test_escape_cancels(modal):
+    from bl_ext.user_default.cutcell.operator_base import worker
+
+    send, reports, removed = modal
+    assert send("TIMER") == {"RUNNING_MODAL"}
+    assert send("ESC") == {"CANCELLED"}
+    assert worker().process is None
+    assert reports[0][0] == "WARNING"
+    assert removed == ["timer"]
