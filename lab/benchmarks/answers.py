@@ -191,11 +191,11 @@ def answers(every: Sequence[Facts], same: int) -> Iterator[tuple[str, str]]:
         for name in ("split", "torn", "meeting", "empty", "vertices", "explained")
     )
     made, by_python, by_us = run_by_attacks()
-    (l1, moved), *others = (medians(name) for name in ("cutcell_rig", "bone_heat", "voxel"))
+    (l1, moved), heat, voxel = (medians(name) for name in ("cutcell_rig", "bone_heat", "voxel"))
     yield (
         "Why not bone heat or voxels",
-        f"L1 to artists' weights (0 to 2) is {l1} (bone heat {others[0][0]}, voxels {others[1][0]}), "
-        f"the deformation error {moved} cm² ({others[0][1]}, {others[1][1]}): medians of the 14 "
+        f"L1 to artists' weights (0 to 2) is {l1} (bone heat {heat[0]}, voxels {voxel[0]}), "
+        f"the deformation error {moved} cm² ({heat[1]}, {voxel[1]}): medians of the 14 "
         "characters that the method was developed on; the paper's falloff for voxels. See "
         "[where it is worse](docs/falloff.md).",
     )
