@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, TITLES, Finding
 from cutcell.diagnosis.leaks import moves_own_part
-from cutcell.editing import Attached, Edits, Filled, FromFile, JointEdit
+from cutcell.editing import Attached, Edits, Filled, FromFile
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
@@ -222,12 +221,8 @@ def _take(tries: list[Edits], session: Session, row: int) -> None:
 
 def with_part(state: State, vertices: list[int], content: Content) -> Edits:
     """Return the edits with a part bound otherwise; the joint that it follows carries weight."""
-    edits, skeleton = stack.with_part(state.edits, vertices, content), state.rig.skeleton
-    joints = dict(edits.joints)
-    for name in content.joints_named():
-        if not skeleton.deform[skeleton.names.index(name)]:
-            joints[name] = replace(joints.get(name, JointEdit()), deform=True)
-    return replace(edits, joints=joints)
+    edits = stack.with_part(state.edits, vertices, content)
+    return stack.with_deform(edits, state.rig.skeleton, content.joints_named())
 
 
 def _joint_choices(state: State, joints: NDArray[np.intp]) -> list[Any]:
