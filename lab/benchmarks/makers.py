@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+import re
+
+from cutcell.errors import ParameterError
+
 MAKERS = {
     "abbott_": "danielabbott",
     "adan_": "Adan",
     "adv_": "Kay Lousberg",
     "almaral_": "Denys Almaral",
+    "animals_pack__": "Quaternius",
     "babylon": "Babylon.js",
     "bamba_": "Bamba_Negra",
     "barav_": "BaraV",
     "boxman": "J. Blaha",
     "bubba": "Hasksoft",
     "creator_": "creator830",
+    "cute_fish_pack__": "Quaternius",
+    "cyberpunk_pack__": "Quaternius",
     "darby_": "Elyse Darby",
     "dcl_": "Decentraland",
     "deok_": "Quaternius",
+    "dinosaurs_pack__": "Quaternius",
     "djmaesen_": "DJMaesen",
     "duck_": "Friendl-e-Duck",
     "duznot_": "Duznot",
+    "easy_enemies_pack__": "Quaternius",
     "elefante_": "planeta-elefante",
     "emoji": "Microsoft",
+    "fish_pack__": "Quaternius",
     "flock_": "Flip Computing",
     "gentry_": "Christian Gentry",
     "godette": "SirRichard94",
@@ -39,7 +49,10 @@ MAKERS = {
     "m2m": "Mesh2Motion",
     "makehuman": "MakeHuman",
     "mannyquin": "Cat Prisbrey",
+    "mech_pack__": "Quaternius",
     "minnyquinn": "Cat Prisbrey",
+    "modular_men": "Quaternius",
+    "modular_women": "Quaternius",
     "mujib_": "Mujib",
     "neither_": "NeitherDucks",
     "nofil_": "Nofil.Khan",
@@ -50,6 +63,7 @@ MAKERS = {
     "packt": "Packt",
     "phoenix": "NORBERTO-3D",
     "picasty_": "Picasty",
+    "platformer_game_pack__": "Quaternius",
     "pmndrs_low_poly_horse": "unknown (horse)",
     "pmndrs_skater": "Kenney",
     "polyme": "W. Yip",
@@ -59,21 +73,24 @@ MAKERS = {
     "red_panda": "galiulinEldar",
     "rukh_": "Rukh3D",
     "schwaab_": "Mateus Schwaab",
+    "single_knight_pack__": "Quaternius",
     "space_survivor": "s.probka",
     "stakler_": "Stakler",
     "sumerian_": "Amazon",
+    "tank_pack__": "Quaternius",
     "tnua_": "I. Arye",
+    "ultimate_space_pack__": "Quaternius",
     "ulysses_": "eb78",
     "uxr_": "VRMADA",
+    "valid_": "VALID",
     "valve_": "Valve",
     "webxr": "Amazon",
     "wu_": "Clement Wu",
     "yuki_": "yukikoooo",
 }
 """By the beginnings of names; the longest that fits counts."""
-VALID = ("AIAN", "Asian", "Black", "Hispanic", "MENA", "White", "X_", "valid")
-PACK = "_pack__"
-"""In names of the train set: Quaternius, as `modular_men` and `modular_women`."""
+VALID = re.compile(r"(X_)?(AIAN|Asian|Black|Hispanic|MENA|NHPI|White)_[FM]_")
+"""Beginnings of names in the train set: VALID."""
 
 
 def maker_of(name: str) -> str:
@@ -81,14 +98,12 @@ def maker_of(name: str) -> str:
 
     Raises
     ------
-    KeyError
+    ParameterError
         A name whose maker is not listed.
     """
-    if name.startswith(VALID):
+    if VALID.match(name):
         return "VALID"
-    if PACK in name or name.startswith("modular_"):
-        return "Quaternius"
     fitting = [start for start in MAKERS if name.startswith(start)]
     if not fitting:
-        raise KeyError(f"{name}: add its maker to {__file__}")
+        raise ParameterError(f'no maker is listed for "{name}"; add one to MAKERS in {__file__}')
     return MAKERS[max(fitting, key=len)]
