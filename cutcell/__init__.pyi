@@ -33,9 +33,12 @@ from .editing import Locked as Locked
 from .editing import Mask as Mask
 from .editing import Mirrored as Mirrored
 from .editing import Painted as Painted
+from .editing import Remapped as Remapped
 from .editing import Smoothed as Smoothed
 from .editing import edited_rig as edited_rig
 from .editing import refine_weights as refine_weights
+from .editing.transfer import Transfer as Transfer
+from .editing.transfer import transfer as transfer
 from .errors import Cancelled as Cancelled
 from .errors import CutcellError as CutcellError
 from .errors import FileError as FileError

@@ -55,6 +55,16 @@ def test_links_lead_somewhere(page):
     assert [link for link in local if not (page.parent / link).exists()] == []
 
 
+@pytest.mark.parametrize("page", DOCUMENTS, ids=lambda page: page.name)
+def test_anchors_are_headings(page):
+    links = re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text(encoding="utf-8"))
+    for name, anchor in links:
+        text = ((page.parent / name) if name else page).read_text(encoding="utf-8")
+        titles = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+        slugs = [re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles]
+        assert anchor in slugs, f"{page.name}: {name}#{anchor}"
+
+
 def test_make_targets_that_are_spoken_of_exist():
     rules = re.findall(r"^([a-z -]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     targets = set(" ".join(rules).split())
@@ -101,6 +111,23 @@ def test_links_of_the_package_begin_with_the_repository(repository, tmp_path):
     code = "from setuptools.build_meta import prepare_metadata_for_build_wheel as p; p('.')"
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, capture_output=True)
     text = next(tmp_path.glob("cutcell-*.dist-info/METADATA")).read_text(encoding="utf-8")
-    links = re.findall(r"\]\(([^)#]+)", text) + re.findall(r"^Project-URL: \w+, (.*)$", text, re.M)
-    assert (len(links) > 13) == bool(repository)
-    assert [link for link in links if not repository or not link.startswith(repository)] == []
+    links = re.findall(r"\]\(([^)]+)\)", text) + re.findall(r"^Project-URL: \w+, (.*)$", text, re.M)
+    elsewhere = [link for link in re.findall(r"\]\(([^)]+)\)", README) if link.startswith("http")]
+    ours = [link for link in links if link not in elsewhere]
+    assert (len(ours) > 13) == bool(repository)
+    parts = [
+        re.fullmatch(rf"{repository}(?:/(?:blob|raw)/main/(.*)|/issues|)", one) for one in ours
+    ]
+    assert all(parts), ours
+    files = [part[1].partition("#")[0] for part in parts if part and part[1]]
+    assert [name for name in files if not (ROOT / name).exists()] == []
+
+
+def test_the_front_page_takes_blocks_that_the_readme_has():
+    front = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    marks = re.findall(r":(?:start-after|end-before): (.*)", front)
+    assert len(marks) == 4
+    assert [mark for mark in marks if README.count(mark) != 1] == []
+    for name in ("who", "answers"):
+        block = README.partition(f"<!-- {name} -->")[2].partition(f"<!-- /{name} -->")[0]
+        assert block.count("\n- **") >= 3

@@ -50,6 +50,12 @@ def stage_by_stage(rig: cutcell.Rig, method: cutcell.Method) -> NDArray[np.float
     return cutcell.refine_weights(rig, weights, method=method, smoothing=2)
 
 
+def dressed(rig: cutcell.Rig, coat: cutcell.TriangleMesh) -> list[cutcell.Transfer]:
+    one = cutcell.transfer(rig, coat, flipped=True)
+    assert_type(one, cutcell.Transfer)
+    return cutcell.transfer(rig, [coat, one.rig], distance=0.1)
+
+
 def of_arrays(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int64],
@@ -113,6 +119,7 @@ def put_right(rig: cutcell.Rig) -> cutcell.Binding:
             cutcell.Layer(cutcell.Attached(), cutcell.Mask(part=7)),
             cutcell.Layer(cutcell.Smoothed(2, through=True)),
             cutcell.Layer(cutcell.Mirrored("left")),
+            cutcell.Layer(cutcell.Remapped({"Head": "Neck", "Neck": "Head"})),
             cutcell.Layer(cutcell.Locked(["Head"])),
         ],
     )

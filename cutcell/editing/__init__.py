@@ -2,7 +2,16 @@
 
 from .edited import edited_rig
 from .edits import Edits, JointEdit
-from .layers.contents import Attached, Computed, Filled, FromFile, Locked, Mirrored, Smoothed
+from .layers.contents import (
+    Attached,
+    Computed,
+    Filled,
+    FromFile,
+    Locked,
+    Mirrored,
+    Remapped,
+    Smoothed,
+)
 from .layers.layer import Layer, Mask
 from .layers.painted import Painted
 from .refine import refine_weights
@@ -19,6 +28,7 @@ __all__ = [
     "Mask",
     "Mirrored",
     "Painted",
+    "Remapped",
     "Smoothed",
     "edited_rig",
     "refine_weights",

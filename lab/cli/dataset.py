@@ -197,24 +197,27 @@ def bind(
 
 - `cutcell dataset export store rignet_data --format rignet`
 
-- `cutcell dataset export store train.h5 --format puppeteer`"""
+- `cutcell dataset export store train.h5 --format puppeteer`
+
+- `cutcell dataset export store train.parquet --format parquet`"""
 )
 @for_people
 def export(
     store: Annotated[Path, typer.Argument(metavar="STORE", help="Made by `dataset bind`.")],
     out: Annotated[
-        Path, typer.Argument(metavar="OUT", help="Output folder, or HDF5 file for Puppeteer.")
+        Path,
+        typer.Argument(metavar="OUT", help="Output folder, or the file of Puppeteer or Parquet."),
     ],
     kind: Annotated[
-        str, typer.Option("--format", metavar="F", help="rignet, unirig or puppeteer.")
+        str, typer.Option("--format", metavar="F", help="rignet, unirig, puppeteer or parquet.")
     ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write STORE in the format of the training code of RigNet, UniRig or Puppeteer.
+    """Write STORE in the format of the training code of RigNet, UniRig or Puppeteer, or Parquet.
 
     The result replaces RigNet's volumetric geodesics or UniRig's voxel_skin, or adds `prior` to
-    Puppeteer's HDF5.
+    Puppeteer's HDF5. Parquet has a row for each asset.
     """
     from ..dataset.export import export as write
 

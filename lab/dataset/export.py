@@ -1,4 +1,4 @@
-"""Export of a store in the formats of the training code of RigNet, UniRig and Puppeteer."""
+"""Export of a store: the formats of RigNet, UniRig and Puppeteer, and a table in Parquet."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from cutcell.runtime.writing import replacing, write_all
 
 from .audit.points import mesh_normals, sample_surface
 from .read.entry import Entry
-from .read.store import Store
+from .read.store import Store, import_arrow
 from .torch_data import at_points
 
-FORMATS = ("rignet", "unirig", "puppeteer")
+FORMATS = ("rignet", "unirig", "puppeteer", "parquet")
 UNREACHED = 8.0
 """RigNet's offset to the straight distance for vertices that no path reaches."""
 POINTS = 8192
@@ -39,15 +39,15 @@ APART = 999.0
 def export(
     store: Path, out: Path, kind: str, report: Callable[[str], None] = lambda name: None
 ) -> int:
-    """Write a store in the format of a project's training code.
+    """Write a store in the format of a project's training code, or as one table.
 
     Parameters
     ----------
     store : Path
         Made by `bind_all`.
     out : Path
-        A folder; for Puppeteer an HDF5 file.
-    kind : {"rignet", "unirig", "puppeteer"}
+        A folder; for Puppeteer an HDF5 file, for Parquet its file.
+    kind : {"rignet", "unirig", "puppeteer", "parquet"}
         See `docs/dataset.md` for the files and arrays of each.
     report : callable
         Receives the name of each asset.
@@ -64,12 +64,14 @@ def export(
     FileError
         The folder is no store or lacks data for the format, or a file cannot be written.
     MissingLibraryError
-        h5py is not installed, for Puppeteer.
+        h5py is not installed, for Puppeteer; or pyarrow.
     """
     check_choice("kind", kind, FORMATS)
     entries = _named(Store(store), report)
     if kind == "puppeteer":
         return _puppeteer(entries, out)
+    if kind == "parquet":
+        return _parquet(entries, out)
     count = 0
     for name, entry in entries:
         write_all(_rignet(out, name, entry) if kind == "rignet" else _unirig(out, name, entry))
@@ -222,3 +224,46 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
         "prior": entry.weights,
         "prior_points": at_points(entry.weights, entry.faces, points).astype(np.float32),
     }
+
+
+def _parquet(entries: Iterator[tuple[str, Entry]], out: Path) -> int:
+    """Write a row an asset, each in a row group of its own: memory is that of one asset."""
+    arrow, parquet = import_arrow()
+    numbers, whole = arrow.float32(), arrow.int32()
+    points, table = arrow.list_(arrow.list_(numbers, 3)), arrow.list_(arrow.list_(numbers))
+    schema = arrow.schema(
+        {
+            "name": arrow.string(),
+            "vertices": points,
+            "faces": arrow.list_(arrow.list_(whole, 3)),
+            "joints": points,
+            "parents": arrow.list_(whole),
+            "joint_names": arrow.list_(arrow.string()),
+            "scale": arrow.float64(),
+            "distances": table,
+            "prior": table,
+            "skin": table,
+        }
+    )
+    out.parent.mkdir(parents=True, exist_ok=True)
+    count = 0
+    with (
+        replacing(out) as (unready,),
+        parquet.ParquetWriter(unready, schema, compression="zstd") as writer,
+    ):
+        for name, entry in entries:
+            row = {
+                "name": name,
+                "vertices": list(entry.vertices),
+                "faces": list(entry.faces),
+                "joints": list(entry.joints),
+                "parents": entry.parents,
+                "joint_names": list(entry.names),
+                "scale": entry.scale,
+                "distances": list(entry.distances.astype(np.float32)),
+                "prior": list(entry.weights.astype(np.float32)),
+                "skin": None if entry.artist is None else list(entry.artist.astype(np.float32)),
+            }
+            writer.write_table(arrow.Table.from_pylist([row], schema))
+            count += 1
+    return count

@@ -21,6 +21,7 @@ from cutcell_app.editing.binding import recovery
 from cutcell_app.editing.binding.recovery import is_current
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.correct import moving, templates
+from cutcell_app.editing.select import bones
 from cutcell_app.features.check import results as check
 from cutcell_app.features.learn import steps
 from cutcell_app.features.learn.lesson import read
@@ -76,6 +77,12 @@ def move(session, rng, files):
     moving.put(session, state.rig.skeleton.joints[state.joint] + rng.choice((0.01, -0.01)))
 
 
+def swap_bones(session, rng, files):
+    names = session.state.rig.skeleton.names
+    session.state.other_bone = rng.choice(names)
+    rng.choice((bones.swap, bones.replace_bone))(session)
+
+
 def export_something(session, rng, files):
     export.export_numbers(session, "weights", "npz", lambda *file: files.append(file))
 
@@ -92,6 +99,7 @@ ACTIONS = (
     *[choose] * 12,
     *[correct_something] * 3,
     *[move] * 2,
+    swap_bones,
     export_something,
     undo,
     open_another,
@@ -170,7 +178,7 @@ class Person:
 
     def edit(self):
         if not self.session.state.bare and self.session.state.binding is not None:
-            action = self.rng.choice((correct_something, move))
+            action = self.rng.choice((correct_something, move, swap_bones))
             action(self.session, self.rng, self.files)
 
     def choose(self):

@@ -16,6 +16,7 @@ from cutcell.editing import (
     Edits,
     Filled,
     FromFile,
+    JointEdit,
     Layer,
     Locked,
     Mask,
@@ -25,7 +26,7 @@ from cutcell.editing.layers import vertices_of as masked_by
 from cutcell.editing.layers.contents import Content
 from cutcell.editing.locks import locked_joints
 from cutcell.graph import CutCellGraph
-from cutcell.rig import Rig
+from cutcell.rig import Rig, Skeleton
 
 
 def put_layer(edits: Edits, layer: Layer) -> tuple[Edits, int]:
@@ -122,6 +123,15 @@ def without_painted(edits: Edits, vertices: NDArray[Any]) -> Edits:
 
 
 # Joints
+
+
+def with_deform(edits: Edits, skeleton: Skeleton, names: Iterable[str]) -> Edits:
+    """Return edits in which some joints of a skeleton may carry weight."""
+    joints = dict(edits.joints)
+    for name in names:
+        if not skeleton.deform[skeleton.names.index(name)]:
+            joints[name] = replace(joints.get(name, JointEdit()), deform=True)
+    return replace(edits, joints=joints)
 
 
 def locked_names(edits: Edits) -> list[str]:

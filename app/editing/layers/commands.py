@@ -1,6 +1,6 @@
 """Change the weights of some vertices by layers, in one step of undo."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import Any
 
@@ -97,13 +97,18 @@ def put_content(
     content: Callable[[], Content],
     opacity: float = 1.0,
     name: str | None = None,
+    deform: Collection[str] = (),
 ) -> None:
-    """Put a layer over some vertices, shape (k,), or over all for None, and choose it."""
+    """Put a layer over some vertices, shape (k,), or over all for None, and choose it.
+
+    Joints that are to `deform` may carry weight from then on.
+    """
 
     def added() -> tuple[Edits, int | None]:
         mask = EVERYWHERE if vertices is None else Mask(vertices=np.unique(vertices))
         layer = Layer(content(), mask, name or "", opacity)
-        return stack.put_layer(session.state.edits, layer)
+        state = session.state
+        return stack.put_layer(stack.with_deform(state.edits, state.rig.skeleton, deform), layer)
 
     if vertices is None or len(vertices):
         _change(session, added)

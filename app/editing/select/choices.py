@@ -17,6 +17,9 @@ class Choices(param.Parameterized):
     amount = param.Number(0.1, bounds=(0, 1), step=0.01, label="Amount")
     move_from = param.String("", doc="The joint whose weight is moved; empty for all.")
     passes = param.Integer(5, bounds=(1, 50), label="Smoothing passes")
+    other_bone = param.String("", doc="The joint that the chosen one is swapped with, or empty.")
+    bone_table = param.String("", doc="The table of bones that was applied last.")
+    with_children = param.Boolean(False, label="With all bones below")
     copied: Any = param.Parameter(None, doc="Points (s, 3) and rows (s, j) that were copied.")
     table = param.Boolean(False, label="Table")
     table_order: Any = param.Parameter(

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, TITLES, Finding
 from cutcell.diagnosis.leaks import moves_own_part
-from cutcell.editing import Attached, Edits, Filled, FromFile, JointEdit
+from cutcell.editing import Attached, Edits, Filled, FromFile
 from cutcell.editing.layers.contents import Content
 from cutcell.errors import CutcellError
 from cutcell.rig import Rig
@@ -28,7 +27,7 @@ from ...editing.select.selections import finding_vertices, select_finding
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from .choices import EXPORT, is_done
-from .results import look_at, repair, take_back
+from .results import exchange_joints, look_at, repair, take_back
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -90,7 +89,7 @@ def _exported(state: State) -> list[Any]:
     else:
         findings = state.export_diagnosis.findings
         lines = [_entry(one, EXPORT + one.code) for one in findings
-                 if not is_done(one, state.edits)]  # fmt: skip
+                 if not is_done(one, state.edits, state.rig.skeleton.names)]  # fmt: skip
     return [ui.section("Weights in the export", lines or _line("No faults."), margin=(8, 0))]
 
 
@@ -127,6 +126,8 @@ def _details(session: Session) -> list[Any]:
     rows: list[Any] = [_line(text) for text in details]
     if not state.bare and (len(finding.vertices) or len(finding.faces)):
         rows.append(ui.button("Select its vertices", select_finding, icon="highlight_alt"))
+    if finding.exchanged and not state.bare and state.binding is not None:
+        rows.append(ui.button("Exchange these weights", exchange_joints, icon="swap_horiz"))
     if state.finding.startswith(EXPORT):
         rows += _part_choices(session, finding)
         return rows + _layers(state, finding)
@@ -222,12 +223,8 @@ def _take(tries: list[Edits], session: Session, row: int) -> None:
 
 def with_part(state: State, vertices: list[int], content: Content) -> Edits:
     """Return the edits with a part bound otherwise; the joint that it follows carries weight."""
-    edits, skeleton = stack.with_part(state.edits, vertices, content), state.rig.skeleton
-    joints = dict(edits.joints)
-    for name in content.joints_named():
-        if not skeleton.deform[skeleton.names.index(name)]:
-            joints[name] = replace(joints.get(name, JointEdit()), deform=True)
-    return replace(edits, joints=joints)
+    edits = stack.with_part(state.edits, vertices, content)
+    return stack.with_deform(edits, state.rig.skeleton, content.joints_named())
 
 
 def _joint_choices(state: State, joints: NDArray[np.intp]) -> list[Any]:

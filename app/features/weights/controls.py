@@ -11,6 +11,7 @@ from ...editing.correct.component_controls import COMPONENTS
 from ...editing.correct.controls import EDITS
 from ...editing.correct.joint_controls import JOINTS
 from ...editing.layers.controls import LAYERS
+from ...editing.select.bones import BONES
 from ...editing.select.controls import SELECTION, WEIGHT_SCALE
 from ...editing.symmetry.controls import PAIRS, SYMMETRY
 from ...widgets import controls as ui
@@ -74,6 +75,7 @@ CONTROLS = ui.column(
     BRUSH,
     SELECTION,
     LAYERS,
+    BONES,
     JOINTS,
     PAIRS,
     ui.folded(

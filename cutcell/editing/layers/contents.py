@@ -192,6 +192,42 @@ class Mirrored(Content):
 
 
 @dataclass(frozen=True)
+class Remapped(Content):
+    """Weights below, moved from joints to others, all at once: two may exchange theirs.
+
+    Parameters
+    ----------
+    joints : mapping of str to str
+        The joint that gets the weight of each; those that are left out keep theirs. Rows for which
+        the file cannot store the result stay as they are below.
+    """
+
+    joints: Mapping[str, str]
+
+    kind = "remapped"
+    title = "Joints replaced"
+    by_rows = True
+
+    def __post_init__(self) -> None:
+        entries = {
+            joint_name("joints", joint): joint_name("joints", target)
+            for joint, target in mapping("joints", self.joints).items()
+        }
+        moved = {joint: target for joint, target in entries.items() if joint != target}
+        if not moved:
+            raise ParameterError("joints must name at least one with another that gets its weight")
+        assign(self, joints=moved)
+
+    def joints_named(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys([*self.joints, *self.joints.values()]))
+
+    def renamed(self, now: Rename) -> Content | None:
+        pairs = {now(joint): now(target) for joint, target in self.joints.items()}
+        joints = {one: other for one, other in pairs.items() if one and other and one != other}
+        return Remapped(joints) if joints else None
+
+
+@dataclass(frozen=True)
 class Locked(Content):
     """Joints keep the file's weights; the others share what is left.
 

@@ -20,6 +20,7 @@ from .contents import (
     FromFile,
     Locked,
     Mirrored,
+    Remapped,
     Rename,
     Smoothed,
 )
@@ -28,8 +29,10 @@ from .painted import Painted
 
 CONTENT_KINDS: dict[str, Any] = {
     one.kind: one
-    for one in (Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored, Locked)
-}
+    for one in (
+        Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored, Remapped, Locked,
+    )
+}  # fmt: skip
 """Contents by the names of their kinds in JSON."""
 
 
@@ -100,7 +103,7 @@ class Layer:
 
     Parameters
     ----------
-    content : Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored or Locked
+    content : Computed, FromFile, Filled, Attached, Painted, Smoothed, Mirrored, Remapped or Locked
     mask : Mask
     name : str
     opacity : float

@@ -20,7 +20,7 @@ from ...weights.prune import prune
 from ..locks import joint_index, lock_joints
 from ..selections import Neighbours
 from ..symmetry import balanced, find_mirror, mirrored
-from .contents import Filled, Locked, Mirrored, Smoothed
+from .contents import Filled, Locked, Mirrored, Remapped, Smoothed
 from .layer import Layer, Mask
 from .painted import Painted
 
@@ -152,6 +152,22 @@ class RigSources:
         assert isinstance(layer.content, Locked)
         joints, most = list(layer.content.joints), self.method.max_influences
         return which, lock_joints(self.rig, below, joints, most, which)
+
+    def _remapped(self, layer: Layer, below: NDArray[np.float64], which: Which) -> Rows:
+        assert isinstance(layer.content, Remapped)
+        joints, skeleton = layer.content.joints, self.rig.skeleton
+        sources = [joint_index(skeleton, name) for name in joints]
+        targets = [joint_index(skeleton, name) for name in joints.values()]
+        which = np.arange(len(below)) if which is None else which
+        which = which[(below[np.ix_(which, sources)] > 0).any(axis=1)]
+        rows = below[which]
+        moved = rows[:, sources]
+        rows[:, sources] = 0.0
+        np.add.at(rows.T, targets, moved.T)
+        if self.rig.allowed is not None:
+            can = ~((rows > 0) & ~self.rig.allowed[which]).any(axis=1)
+            which, rows = which[can], rows[can]
+        return which, rows
 
     @cached_property
     def _over(self) -> Neighbours:

@@ -27,6 +27,10 @@ from .store import STORE, Store
 RAW = "raw_data.npz"
 """UniRig's name for one rig; the folder it is in names the rig."""
 HDF5 = (".h5", ".hdf5")
+FACES_OF_ANYMATE = b"mesh_face"
+"""Key of the faces in Anymate's test split; its training split has none."""
+MAX_PICKLE = 2**28
+"""Bytes of a pickle that are searched for it; the numbers are in other members."""
 FILES = set(suffixes("read")) & set(suffixes("read_skeleton")) - {".txt"}
 """RigNet's files are found by their meshes."""
 RIGNET = (("obj", "rig_info"), ("obj_remesh", "rig_info_remesh"))
@@ -123,6 +127,8 @@ def find_sources(paths: Iterable[Path]) -> list[Source]:
         if path.is_dir():
             inside = list(_in_folder(path))
             if not inside:
+                for tensors in sorted(path.rglob("*.pt")):
+                    _refuse_tensors(tensors)
                 raise FileError(
                     f"{path}: holds no rigs; what is read is {', '.join(sorted(FILES))}, folders "
                     f"of RigNet's (obj, rig_info), {RAW} and HDF5"
@@ -177,7 +183,9 @@ def _rignet_rig(path: Path) -> Path | None:
 
 def _in_file(path: Path, name: str) -> Iterator[Source]:
     kind = path.suffix.lower()
-    if kind in HDF5:
+    if kind == ".pt":
+        _refuse_tensors(path)
+    elif kind in HDF5:
         for sample in samples_of(path):
             yield Source(f"{name}/{sample}", path, "puppeteer", sample=sample)
     elif path.name == RAW:
@@ -191,6 +199,27 @@ def _in_file(path: Path, name: str) -> Iterator[Source]:
         )
     else:
         yield Source(name, path)
+
+
+def _refuse_tensors(path: Path) -> None:
+    """Say why a file of `torch.save`, such as Anymate's, is not read."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            pickles = [name for name in archive.namelist() if name.endswith("data.pkl")]
+            has_faces = any(
+                FACES_OF_ANYMATE in archive.open(name).read(MAX_PICKLE) for name in pickles
+            )
+    except (OSError, zipfile.BadZipFile):
+        raise FileError(f"{path.name}: is no readable file of torch.save") from None
+    if not has_faces:
+        raise FileError(
+            f"{path.name}: has points and no faces, as Anymate's training split; weights through "
+            "the body need a mesh. Take a data set with faces"
+        )
+    raise FileError(
+        f"{path.name}: is a file of torch.save, which only PyTorch reads; save each of its meshes "
+        "(mesh_pc, mesh_face) with its joints as OBJ, GLB or npz"
+    )
 
 
 def _is_archive(path: Path) -> bool:

@@ -201,7 +201,7 @@ def manifest_row(name: str, source: str, content: str, outcome: Outcome) -> dict
 
 def table_bytes(rows: Sequence[Mapping[str, Any]]) -> bytes:
     """Return rows as a Parquet file."""
-    arrow, parquet = _arrow()
+    arrow, parquet = import_arrow()
     columns = {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
     whole = {*SIZES, "bytes", "memory"}
     arrays = {}
@@ -219,14 +219,15 @@ def table_bytes(rows: Sequence[Mapping[str, Any]]) -> bytes:
 
 def read_table(path: Path) -> list[dict[str, Any]]:
     """Return the rows of a Parquet file."""
-    arrow, parquet = _arrow()
+    arrow, parquet = import_arrow()
     try:
         return parquet.read_table(path).to_pylist()
     except (OSError, arrow.ArrowException) as error:
         raise FileError(f"{path.name}: cannot be read ({reason(error)})") from None
 
 
-def _arrow() -> tuple[Any, Any]:
+def import_arrow() -> tuple[Any, Any]:
+    """Import pyarrow and its module for Parquet."""
     try:
         import pyarrow
         import pyarrow.parquet

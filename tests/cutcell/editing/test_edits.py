@@ -20,6 +20,7 @@ from cutcell import (
     Mirrored,
     Painted,
     ParameterError,
+    Remapped,
     Smoothed,
 )
 from cutcell.errors import FileError
@@ -37,6 +38,7 @@ LAYERS = (
     Layer(Painted([2, 9], ["head", "tail"], [[0.25, 0.75], [1, 0]])),
     Layer(Smoothed(3, through=True)),
     Layer(Mirrored("left")),
+    Layer(Remapped({"head": "neck", "neck": "head"})),
     Layer(Locked(["neck"])),
 )
 ALL = Edits(
@@ -98,6 +100,8 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"layers": [{"kind": "filled"}]}', "layer 1 needs weights"),
         ('{"layers": [{"kind": "filled", "weights": {"a": 0}}]}', "layer 1: weights must name"),
         ('{"layers": [{"kind": "filled", "weights": {"a": -1}}]}', 'weight of "a" must be'),
+        ('{"layers": [{"kind": "remapped", "joints": {"a": "a"}}]}', "layer 1: joints must name"),
+        ('{"layers": [{"kind": "remapped", "joints": {"a": 1}}]}', "must hold names of joints"),
         ('{"layers": [{"kind": "file", "weights": 1}]}', "layer 1 has no .weights."),
         ('{"layers": [{"kind": "file", "opacity": 2}]}', "layer 1: opacity must be"),
         ('{"layers": [{"kind": "file", "on": 1}]}', "layer 1: on must be"),

@@ -22,6 +22,7 @@ from cutcell import (
     Mirrored,
     Painted,
     ParameterError,
+    Remapped,
     Smoothed,
     TriangleMesh,
 )
@@ -63,6 +64,7 @@ def plain():
             'layer 1, "Filled", does not fit worm.*no joint "hed"',
         ),
         ({"layers": [Layer(Painted([0], ["hed"], [[1]]))]}, ParameterError, 'no joint "hed"'),
+        ({"layers": [Layer(Remapped({"head": "hed"}))]}, ParameterError, 'no joint "hed"'),
         ({"layers": [Layer(Locked(["hed"]))]}, ParameterError, 'no joint "hed"'),
         ({"layers": [Layer(Computed(gain={"hed": 2}))]}, ParameterError, 'no joint "hed"'),
         (
@@ -256,6 +258,7 @@ contents = st.one_of(
     st.sampled_from(NAMES).map(lambda name: Filled({name: 1, NAMES[0]: 0.5})),
     st.integers(1, 3).map(Smoothed),
     st.just(Locked(NAMES[:2])),
+    st.just(Remapped({NAMES[0]: NAMES[1], NAMES[1]: NAMES[0], NAMES[2]: NAMES[3]})),
     vertices.filter(len).map(lambda which: Painted(which, NAMES, OTHER[which])),
 )
 opacities = st.one_of(st.sampled_from([0.0, 0.5, 1.0]), st.floats(0, 1))
@@ -359,3 +362,37 @@ def test_a_mask_of_all_differs_from_one_of_some(others):
     assert Mask() != some
     assert Layer(Locked(["head"]), some) != Layer(Locked(["head"]))
     assert Layer(Locked(["head"])) != Layer(Locked(["head"]), some)
+
+
+def test_two_joints_exchange_their_weights_and_others_keep_every_bit():
+    swap = Layer(Remapped({"head": "tail", "tail": "head"}))
+    once = bound(WORM, swap, base="file")
+    order = np.arange(JOINTS)
+    order[[HEAD, TAIL]] = TAIL, HEAD
+    np.testing.assert_array_equal(once, WORM.weights[:, order])
+    np.testing.assert_array_equal(bound(WORM, swap, swap, base="file"), WORM.weights)
+    some = np.flatnonzero(WORM.weights[:, HEAD] > 0)[:5]
+    there = bound(WORM, replace(swap, mask=Mask(vertices=some)), base="file")
+    np.testing.assert_array_equal(there[some], once[some])
+    rest = np.delete(np.arange(COUNT), some)
+    np.testing.assert_array_equal(there[rest], WORM.weights[rest])
+
+
+def test_a_replaced_joint_adds_its_weight_where_the_file_can_store_it():
+    layer = Layer(Remapped({"neck": "head"}))
+    neck = NAMES.index("neck")
+    weights = bound(WORM, layer, base="file")
+    assert weights[:, neck].max() == 0
+    np.testing.assert_allclose(weights[:, HEAD], WORM.weights[:, [neck, HEAD]].sum(axis=1))
+    allowed = np.ones((COUNT, JOINTS), bool)
+    allowed[::2, HEAD] = WORM.weights[::2, HEAD] > 0
+    partly = bound(replace(WORM, allowed=allowed), layer, base="file")
+    assert (partly[~allowed] == 0).all()
+    np.testing.assert_allclose(partly.sum(axis=1), 1)
+
+
+def test_a_swap_follows_the_names_of_its_joints():
+    content = Remapped({"head": "tail", "tail": "head"})
+    assert content.renamed({"head": "skull"}.get) is None
+    now = content.renamed(lambda name: "skull" if name == "head" else name)
+    assert now == Remapped({"skull": "tail", "tail": "skull"})

@@ -2,12 +2,14 @@
 
 import json
 import os
+import pickle
 import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
+import zipfile
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -321,6 +323,16 @@ def test_wrong_inputs_are_told(tmp_path, made, monkeypatch):
         find_sources([tmp_path / "all.npz"])
     with pytest.raises(FileError, match="holds other files"):
         bind_all([folder], folder, QUICK)
+    for key, why in (("pc", "points and no faces"), ("mesh_face", "save each")):
+        (tmp_path / key).mkdir()
+        with zipfile.ZipFile(tmp_path / key / "anymate.pt", "w") as archive:
+            archive.writestr("anymate/data.pkl", pickle.dumps([{key: [1]}]))
+        for place in (tmp_path / key, tmp_path / key / "anymate.pt"):
+            with pytest.raises(FileError, match=why):
+                find_sources([place])
+    (tmp_path / "pc" / "anymate.pt").write_bytes(b"PK")
+    with pytest.raises(FileError, match="no readable file"):
+        find_sources([tmp_path / "pc"])
     monkeypatch.setattr("cutcell_lab.dataset.bind.cluster.CONNECT", "100ms")
     with pytest.raises(CutcellError, match="no Dask scheduler"):
         bind_all([folder], tmp_path / "s", QUICK, scheduler="tcp://127.0.0.1:1")

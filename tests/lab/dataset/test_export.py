@@ -1,10 +1,12 @@
 """What is exported loads by loaders written from the three projects' descriptions."""
 
+import sys
 from collections import defaultdict
 from types import SimpleNamespace
 
 import h5py
 import numpy as np
+import pyarrow.parquet as parquet
 import pytest
 
 import cutcell
@@ -126,6 +128,28 @@ def test_puppeteer(store, tmp_path):
             assert data["edges"][:].max() < len(entry.vertices)
 
 
+def test_parquet(store, tmp_path):
+    assert export(store, tmp_path / "train.parquet", "parquet") == 3
+    rows = parquet.read_table(tmp_path / "train.parquet").to_pylist()
+    assert [row["name"] for row in rows] == ["0", "1", "2"]
+    for row in rows:
+        entry = entry_of(store, row["name"])
+        assert row["joint_names"] == list(entry.names)
+        assert row["scale"] == entry.scale
+        pairs = {"prior": entry.weights, "skin": entry.artist, "distances": entry.distances}
+        for key in ("vertices", "faces", "joints", "parents"):
+            pairs[key] = getattr(entry, key)
+        for key, expected in pairs.items():
+            np.testing.assert_array_equal(np.array(row[key], expected.dtype), expected)
+
+
+def test_parquet_asks_for_its_library(store, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(MissingLibraryError, match="pip install"):
+        export(store, tmp_path / "train.parquet", "parquet")
+    assert not list(tmp_path.iterdir())
+
+
 def test_wrong_exports_are_told(store, tmp_path):
     with pytest.raises(ParameterError, match="kind"):
         export(store, tmp_path, "other")
@@ -164,11 +188,11 @@ def test_rigs_of_different_size_make_one_batch(store):
 
 
 def test_torch_is_asked_for_by_name(store, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "torch", None)
+    monkeypatch.setitem(sys.modules, "torch", None)
     with pytest.raises(MissingLibraryError, match="torch"):
         RigDataset(store)
     stand_in = SimpleNamespace(from_numpy=lambda array: ("tensor", array))
-    monkeypatch.setitem(__import__("sys").modules, "torch", stand_in)
+    monkeypatch.setitem(sys.modules, "torch", stand_in)
     kind, points = RigDataset(store, points=7)[0]["points"]
     assert (kind, points.shape) == ("tensor", (7, 3))
 
@@ -200,6 +224,6 @@ def test_what_cannot_be_made_is_told(monkeypatch):
         generate("dragon", 0)
     with pytest.raises(ParameterError, match="detail"):
         generate("hand", 0, detail=1)
-    monkeypatch.setitem(__import__("sys").modules, "anny", None)
+    monkeypatch.setitem(sys.modules, "anny", None)
     with pytest.raises(MissingLibraryError, match="anny"):
         generate("person", 0)
