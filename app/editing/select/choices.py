@@ -21,6 +21,7 @@ class Choices(param.Parameterized):
     bone_table = param.String("", doc="The table of bones that was applied last.")
     with_children = param.Boolean(False, label="With all bones below")
     copied: Any = param.Parameter(None, doc="Points (s, 3) and rows (s, j) that were copied.")
+    copied_mask: Any = param.Parameter(None, doc="A mesh, and strengths (n,) that were copied.")
     table = param.Boolean(False, label="Table")
     table_order: Any = param.Parameter(
         (1, True), doc="Column of the table that sorts it, and whether the largest come first."
