@@ -23,7 +23,7 @@ from cutcell_app.editing.brush.strokes import clear_selection, select
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.correct import moving, templates
 from cutcell_app.editing.layers.masks import MASKS
-from cutcell_app.editing.select import bones
+from cutcell_app.editing.select import bones, saved
 from cutcell_app.features.check import results as check
 from cutcell_app.features.learn import steps
 from cutcell_app.features.learn.lesson import read
@@ -94,6 +94,13 @@ def change_mask(session, rng, files):
     clear_selection(session)
 
 
+def save_selection(session, rng, files):
+    select(session, np.arange(len(session.state.rig.mesh.vertices)) % rng.randint(2, 5) == 0)
+    saved.save(session, rng.choice("ab"))
+    rng.choice((saved.forget, clear_selection))(session)
+    clear_selection(session)
+
+
 def export_something(session, rng, files):
     export.export_numbers(session, "weights", "npz", lambda *file: files.append(file))
 
@@ -112,6 +119,7 @@ ACTIONS = (
     *[move] * 2,
     swap_bones,
     change_mask,
+    save_selection,
     export_something,
     undo,
     open_another,
@@ -190,7 +198,9 @@ class Person:
 
     def edit(self):
         if not self.session.state.bare and self.session.state.binding is not None:
-            action = self.rng.choice((correct_something, move, swap_bones, change_mask))
+            action = self.rng.choice(
+                (correct_something, move, swap_bones, change_mask, save_selection)
+            )
             action(self.session, self.rng, self.files)
 
     def choose(self):

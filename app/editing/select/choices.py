@@ -14,6 +14,7 @@ class Choices(param.Parameterized):
     lasso_through = param.Boolean(False, label="Lasso hidden vertices")
     isolated = param.Boolean(False, label="Isolate")
     condition = param.String("", doc="The condition that was applied last.")
+    saved = param.String("", doc="The saved selection that was chosen or saved last.")
     amount = param.Number(0.1, bounds=(0, 1), step=0.01, label="Amount")
     move_from = param.String("", doc="The joint whose weight is moved; empty for all.")
     passes = param.Integer(5, bounds=(1, 50), label="Smoothing passes")
