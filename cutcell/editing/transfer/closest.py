@@ -87,6 +87,8 @@ class Surface:
     ) -> Points:
         """Return the closest point on the faces of some samples, for each point that is near.
 
+        Another point may be closer by a part of the spacing where many small faces are near.
+
         Shapes: points (p, 3), samples (s,) ascending; radius or (p,).
         """
         face, places = self.sample_face[samples], self.samples[samples]

@@ -15,7 +15,7 @@ from ...runtime.progress import Progress
 from .closest import Surface
 from .through import alternatives, landmark_distances, resolve
 
-NEAR = 0.2
+NEAR = 0.3
 """Part of the greatest distance within which normals need not agree."""
 RESOLUTION = 64
 """Of the graph that distances through the body are measured in."""

@@ -84,10 +84,13 @@ def resolve(
     """
     count, point = len(mesh.points), candidates.point
     nearest = candidates.first()
-    through = _apart(place, place[nearest[point]])
-    straight = np.linalg.norm(where - where[nearest[point]], axis=1)
+
+    def elsewhere(one: NDArray[np.intp], other: NDArray[np.intp]) -> NDArray[np.bool_]:
+        straight = np.linalg.norm(where[one] - where[other], axis=1)
+        return _apart(place[one], place[other]) > DETOUR * straight + MIN_DETOUR
+
     ambiguous = np.zeros(count, np.bool_)
-    ambiguous[point[through > DETOUR * straight + MIN_DETOUR]] = True
+    ambiguous[point[elsewhere(np.arange(len(point)), nearest[point])]] = True
     choice = np.where(ambiguous | (candidates.distance[nearest] > radius), -1, nearest)
     joined = _neighbours(mesh)
     while True:
@@ -102,8 +105,9 @@ def resolve(
         around = around[number[point[tried]]] / support[point[tried], None]
         cost = _apart(place[tried], around) + candidates.distance[tried]
         best = tried[np.lexsort((cost, point[tried]))]
-        best = best[np.append(True, np.diff(point[best]) > 0)]
-        choice[point[best]] = best
+        choice[point[best[::-1]]] = best[::-1]  # the first one is written last
+        alike = tried[~elsewhere(tried, choice[point[tried]])]
+        choice[point[alike[::-1]]] = alike[::-1]  # the closest in this part of the body
     choice = np.where(choice < 0, nearest, choice)
     return choice, choice != nearest
 

@@ -1,10 +1,52 @@
 """Transfer of weights to clothes and levels of detail."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import cutcell
-from tests.bars import bar
+from cutcell import ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, WeightsError
+from cutcell.editing.transfer import INPAINTED, MATCHED, REFUSED, UNCHANGED
+from cutcell.editing.transfer.closest import Surface, barycentric
+from cutcell.editing.transfer.inpainting import inpaint
+from tests.bars import bar, surface_of
+
+GAP = 0.01
+
+
+def limbs(other):
+    """Return two limbs that hang side by side, of thickness 0.2 and `other`, joined at the top."""
+    x = np.array([0, 0.1, 0.2, 0.2 + GAP, 0.2 + GAP + other / 2, 0.2 + GAP + other])
+    y, z = np.linspace(0, 1.2, 21), np.linspace(0, 0.2, 3)
+    solid = np.ones((5, 20, 2), bool)
+    solid[2, :16] = False
+    mesh = surface_of((x, y, z), solid)
+    up = np.clip((mesh.vertices[:, 1] - 1) / 0.1, 0, 1)
+    first = mesh.vertices[:, 0] < 0.2 + GAP / 2
+    joints = [[0.2, 1.1, 0.1], [0.1, 1, 0.1], [0.2 + GAP + other / 2, 1, 0.1]]
+    skeleton = Skeleton(joints, [-1, 0, 0], names=["top", "first", "second"])
+    return Rig(mesh, skeleton, np.stack([up, (1 - up) * first, (1 - up) * ~first], axis=1))
+
+
+def sleeve(offset, x=0.0, thickness=0.2, low=0.1, high=0.8):
+    """Return a tube around a limb that begins at x, that much away from its skin."""
+    sides = x + np.array([-offset, thickness / 2, thickness + offset])
+    depth = np.array([-offset, 0.1, 0.2 + offset])
+    mesh = surface_of((sides, np.linspace(low, high, 21), depth), np.ones((2, 20, 2), bool))
+    height = mesh.vertices[mesh.faces][..., 1]
+    faces = mesh.faces[~((height == low).all(axis=1) | (height == high).all(axis=1))]
+    used = np.unique(faces)
+    return TriangleMesh(mesh.vertices[used], np.searchsorted(used, faces))
+
+
+def sheet(height=0.25, count=11, width=0.2):
+    """Return a flat sheet above a bar."""
+    x, z = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, width, 3), indexing="ij")
+    points = np.stack([x, 0 * x + height, z], axis=-1).reshape(-1, 3)
+    a = (3 * np.arange(count - 1)[:, None] + np.arange(2)).ravel()
+    return TriangleMesh(points, np.vstack([np.c_[a, a + 1, a + 4], np.c_[a, a + 4, a + 3]]))
 
 
 @pytest.fixture(scope="module")
@@ -17,13 +59,14 @@ def shell(rig, factor=1.1):
     """Return the mesh of a bar, thicker."""
     middle = np.array([0.5, 0.1, 0.1])
     around = (rig.mesh.vertices - middle) * [1, factor, factor] + middle
-    return cutcell.TriangleMesh(around, rig.mesh.faces)
+    return TriangleMesh(around, rig.mesh.faces)
 
 
 def test_a_mesh_gets_its_own_weights_back(body):
     result = cutcell.transfer(body, body.mesh)
     assert np.abs(result.weights - body.weights).max() < 1e-12
     assert result.report["matched"] == len(body.mesh.vertices)
+    assert result.distance.max() < 1e-9
 
 
 def test_a_shell_follows_the_points_below_it(body):
@@ -31,7 +74,220 @@ def test_a_shell_follows_the_points_below_it(body):
     assert np.abs(result.weights - body.weights).max() < 0.01
 
 
-def test_several_targets_get_what_each_gets_alone(body):
-    alone = cutcell.transfer(body, shell(body))
-    for one in cutcell.transfer(body, [shell(body), shell(body)]):
-        assert np.abs(one.weights - alone.weights).max() < 1e-12
+@pytest.mark.parametrize("seed", range(3))
+def test_closest_points_are_those_of_a_search_of_all_faces(seed):
+    rng = np.random.default_rng(seed)
+    mesh = TriangleMesh(rng.random((40, 3)) ** 2, rng.integers(0, 40, (60, 3))).welded
+    faces, points = mesh.faces[mesh.is_whole], rng.random((50, 3))
+    result = Surface(mesh, faces, 0.01).nearest(points)
+    share = rng.dirichlet([0.5] * 3, 20_000)
+    for point, distance in zip(points, result.distance, strict=True):
+        corners = mesh.points[faces]
+        every = np.repeat(point[None], len(faces), axis=0)
+        closest = np.einsum("fc,fcx->fx", barycentric(every, corners), corners)
+        least = np.linalg.norm(closest - point, axis=1).min()
+        assert least - 1e-12 <= distance <= least + 0.01 / 2
+        sampled = np.linalg.norm(share @ corners[rng.integers(len(faces))] - point, axis=1).min()
+        assert least <= sampled + 1e-12
+
+
+@pytest.mark.parametrize("other", [0.2, 0.5], ids=["legs together", "arm on hip"])
+@pytest.mark.parametrize("offset", [0.012, 0.04])
+@pytest.mark.parametrize("flipped", [False, True])
+def test_a_sleeve_inside_another_limb_follows_its_own(other, offset, flipped):
+    rig, tube = limbs(other), sleeve(offset)
+    near = cKDTree(rig.mesh.vertices).query(tube.vertices)[1]
+    assert rig.weights[near, 2].max() == 1, "the closest vertices alone are wrong"
+    result = cutcell.transfer(rig, tube, flipped=flipped)
+    assert result.weights[:, 1].min() > 1 - 1e-9
+    assert result.resolved.any()
+
+
+def test_a_sleeve_around_the_other_limb_follows_that_one():
+    result = cutcell.transfer(limbs(0.2), sleeve(0.04, x=0.2 + GAP))
+    assert result.weights[:, 2].min() > 1 - 1e-9
+
+
+def test_what_is_far_away_is_inpainted_as_smoothly_as_possible(body):
+    """A sheet that only touches at its ends: weights between them are cubic, not constant."""
+    mesh = sheet(0.2, 41)
+    x = mesh.vertices[:, 0]
+    lifted = mesh.vertices + np.where((x > 0.2) & (x < 0.8), 0.3, 0.0)[:, None] * [0, 1, 0]
+    result = cutcell.transfer(body, TriangleMesh(lifted, mesh.faces), distance=0.02)
+    away = (x > 0.2) & (x < 0.8)
+    assert (result.state[away] == INPAINTED).all()
+    assert (result.state[~away] == MATCHED).all()
+    between = result.weights[:, 0][away]
+    assert between.max() <= 1
+    assert ((between > 0.02) & (between < 0.98)).any()
+
+
+def test_inpainting_minimises_the_energy():
+    mesh = sheet(count=21).welded
+    fixed = (mesh.points[:, 0] < 0.25) | (mesh.points[:, 0] > 0.75)
+    first = 0.2 + 0.6 * mesh.points[:, 0]  # linear weights have no energy
+    rows = inpaint(mesh, fixed, np.where(fixed[:, None], np.stack([first, 1 - first], 1), 0.0))
+    inner = np.abs(rows[:, 0] - first)
+    assert inner.max() < 0.02
+
+
+def test_normals_count_where_fabric_is_not_on_the_skin(body):
+    above = sheet(0.24)
+    above = TriangleMesh(above.vertices * [0.8, 1, 0.5] + [0.1, 0, 0.05], above.faces)
+    turned = TriangleMesh(above.vertices, above.faces[:, ::-1])
+    options = {"distance": 0.1, "angle": 30}
+    states = {
+        name: cutcell.transfer(body, mesh, flipped=flipped, **options).state
+        for name, mesh, flipped in (
+            ("outward", above, False),
+            ("inward", turned, False),
+            ("flipped", turned, True),
+        )
+    }
+    assert {len(set(state.tolist())) for state in states.values()} == {1}
+    assert sorted(int(state[0]) for state in states.values()) == [MATCHED, MATCHED, REFUSED]
+    assert states["flipped"][0] == MATCHED
+
+
+def test_a_component_without_match_is_refused_and_still_has_weights(body):
+    far = TriangleMesh(body.mesh.vertices + np.array([0, 3, 0]), body.mesh.faces)
+    result = cutcell.transfer(body, far)
+    assert (result.state == REFUSED).all()
+    np.testing.assert_allclose(result.weights.sum(axis=1), 1)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_no_row_is_zero(body, seed):
+    rng = np.random.default_rng(seed)
+    mesh = TriangleMesh(rng.uniform(-0.5, 1.5, (60, 3)), rng.integers(0, 60, (50, 3)))
+    weights = body.weights * (rng.random(len(body.weights)) < 0.9)[:, None]
+    result = cutcell.transfer(body.with_weights(weights), mesh, max_influences=2)
+    np.testing.assert_allclose(result.weights.sum(axis=1), 1)
+    assert (result.weights >= 0).all()
+    assert ((result.weights > 0).sum(axis=1) <= 2).all()
+
+
+def test_vertices_at_one_place_get_equal_weights_across_parts_and_targets(body):
+    mesh = shell(body)
+    apart = TriangleMesh(
+        mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3)
+    )
+    whole, parts = cutcell.transfer(body, [mesh, apart])
+    assert np.array_equal(parts.weights, whole.weights[mesh.faces.ravel()])
+
+
+def moved(rig, turn, scale, by):
+    vertices, joints = (scale * x @ turn.T + by for x in (rig.mesh.vertices, rig.skeleton.joints))
+    return replace(
+        rig,
+        mesh=TriangleMesh(vertices, rig.mesh.faces),
+        skeleton=replace(rig.skeleton, joints=joints),
+    )
+
+
+def test_motion_and_scale_change_nothing():
+    rig, tube = limbs(0.2), sleeve(0.02)
+    expected = cutcell.transfer(rig, tube)
+    turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
+    other = moved(rig, turn, 100.0, [3, 4, 5])
+    result = cutcell.transfer(
+        other, TriangleMesh(100 * tube.vertices @ turn.T + [3, 4, 5], tube.faces)
+    )
+    assert np.abs(result.weights - expected.weights).max() < 1e-6
+    assert np.array_equal(result.state, expected.state)
+    np.testing.assert_allclose(result.distance, 100 * expected.distance, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_order_of_vertices_and_faces_changes_nothing(seed):
+    rng = np.random.default_rng(seed)
+    rig, tube = limbs(0.2), sleeve(0.02)
+    expected = cutcell.transfer(rig, tube)
+
+    def shuffled(mesh):
+        order = rng.permutation(len(mesh.vertices))
+        faces = np.argsort(order)[mesh.faces][rng.permutation(len(mesh.faces))]
+        return order, TriangleMesh(mesh.vertices[order], faces)
+
+    order, mesh = shuffled(rig.mesh)
+    source = replace(rig, mesh=mesh, weights=rig.weights[order])
+    order, mesh = shuffled(tube)
+    result = cutcell.transfer(source, mesh)
+    assert np.abs(result.weights - expected.weights[order]).max() < 1e-6
+
+
+def dressed(body):
+    """Return a shell that has weights: all of it follows the first joint, and a bit the last."""
+    own = np.tile([0.75, 0, 0.25], (len(body.mesh.vertices), 1))
+    return replace(body, mesh=shell(body), weights=own, parts=())
+
+
+def test_named_joints_alone_change(body):
+    target = dressed(body)
+    result = cutcell.transfer(body, target, joints=["joint 1"])
+    every = cutcell.transfer(body, target)
+    np.testing.assert_allclose(result.weights[:, 1], every.weights[:, 1], atol=1e-9)
+    left = 1 - result.weights[:, 1]
+    np.testing.assert_allclose(result.weights[:, 0], 0.75 * left, atol=1e-9)
+
+
+def test_locked_joints_keep_their_weights(body):
+    result = cutcell.transfer(body, dressed(body), locked=["joint 2"])
+    np.testing.assert_allclose(result.weights[:, 2], 0.25)
+    np.testing.assert_allclose(result.weights.sum(axis=1), 1)
+
+
+def test_a_mix_and_a_mask_blend_with_the_targets_own_weights(body):
+    target, every = dressed(body), cutcell.transfer(body, dressed(body))
+    half = cutcell.transfer(body, target, mix=0.5, max_influences=None)
+    np.testing.assert_allclose(half.weights, (every.weights + target.weights) / 2, atol=1e-9)
+    mask = target.mesh.vertices[:, 0] > 0.5
+    masked = cutcell.transfer(body, target, mask=mask)
+    assert np.array_equal(masked.weights[~mask], target.weights[~mask])
+    np.testing.assert_allclose(masked.weights[mask], every.weights[mask], atol=1e-9)
+    assert ((masked.state == UNCHANGED) == ~mask).all()
+
+
+def test_skeletons_are_matched_by_names_with_exceptions(body):
+    names = ["ns:Joint_2", "Joint.0"]
+    skeleton = Skeleton(body.skeleton.joints[[2, 0]], [1, -1], names=names)
+    target = replace(body, mesh=shell(body), skeleton=skeleton, weights=None, parts=())
+    plain = cutcell.transfer(body, shell(body)).weights
+    result = cutcell.transfer(body, target).weights  # joint 1 has no partner, joint 0 is above it
+    np.testing.assert_allclose(result[:, 1], plain[:, 0] + plain[:, 1], atol=1e-9)
+    result = cutcell.transfer(body, target, names={"joint 1": "ns:Joint_2"}).weights
+    np.testing.assert_allclose(result[:, 0], plain[:, 1] + plain[:, 2], atol=1e-9)
+
+
+def test_a_level_of_detail_is_close_to_its_source(body):
+    coarse = bar(10).mesh
+    at = cKDTree(body.mesh.vertices).query(coarse.vertices)[1]
+    result = cutcell.transfer(body, coarse)
+    assert np.abs(result.weights - body.weights[at]).max() < 1e-9
+
+
+def test_wrong_input_is_refused(body):
+    with pytest.raises(WeightsError, match="no weights"):
+        cutcell.transfer(body.with_weights(None), body.mesh)
+    for wrong in (
+        {"distance": -1},
+        {"angle": 200},
+        {"mix": 2},
+        {"max_influences": 0},
+        {"flipped": 1},
+    ):
+        with pytest.raises(ParameterError, match=next(iter(wrong))):
+            cutcell.transfer(body, body.mesh, **wrong)
+    with pytest.raises(ParameterError, match="no target"):
+        cutcell.transfer(body, [])
+    with pytest.raises(ParameterError, match="one target"):
+        cutcell.transfer(body, [body.mesh], mask=np.ones(3))
+    with pytest.raises(ParameterError, match="mask"):
+        cutcell.transfer(body, body, mask=np.full(len(body.weights), 2.0))
+    with pytest.raises(WeightsError, match="own"):
+        cutcell.transfer(body, body.mesh, mix=0.5)
+    with pytest.raises(ParameterError, match='no joint "elbow"'):
+        cutcell.transfer(body, dressed(body), locked=["elbow"])
+    other = replace(body, skeleton=Skeleton([[0, 0, 0]], [-1], names=["hip"]), weights=None)
+    with pytest.raises(SkeletonError, match="no joint for"):
+        cutcell.transfer(body, other)
