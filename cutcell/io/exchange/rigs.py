@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...errors import FileError, WeightsError
 from ...rig import Part, Rig
-from ...rig.names import plain
+from ...rig.names import plain, same_names
 from ...runtime.writing import check_place, write_all
 from ..files import naming
 from .files import WEIGHT_FILES, MeshWeights, read_weights
@@ -144,17 +143,10 @@ def _same_mesh(name: str, other: str) -> bool:
 
 
 def _joints_of(rig: Rig, one: MeshWeights) -> NDArray[np.intp]:
-    """Return the rig's joint for each of a file: of its name, or but for name space and case."""
-    by_name = {name: j for j, name in reversed(list(enumerate(rig.skeleton.names)))}
-    by_key: dict[Any, list[int]] = {}
-    for j, name in enumerate(rig.skeleton.names):
-        by_key.setdefault(plain(name), []).append(j)
-    joints = []
-    for k, name in enumerate(one.joints):
-        short = name.split("|")[-1]  # a path in Maya
-        alike = by_key.get(plain(short), [])
-        joint = by_name.get(name, by_name.get(short, alike[0] if len(alike) == 1 else -1))
-        if joint < 0 and one.weights[:, k].any():
-            raise WeightsError(f'"{one.mesh}" follows the joint "{short}", which the rig lacks')
-        joints.append(max(joint, 0))
-    return np.array(joints, np.intp)
+    """Return the rig's joint for each of a file, whose names may be paths in Maya."""
+    names = [name.split("|")[-1] for name in one.joints]
+    joints = same_names(names, rig.skeleton.names)
+    if (lost := (joints < 0) & one.weights.any(axis=0)).any():
+        name = names[int(lost.argmax())]
+        raise WeightsError(f'"{one.mesh}" follows the joint "{name}", which the rig lacks')
+    return np.maximum(joints, 0)
