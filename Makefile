@@ -37,7 +37,7 @@ exit $$((tests ? tests : lint))
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help app test quick test-core test-viewers test-lab test-app test-nightly test-networks test-processors lint format assets docs lock clean
+.PHONY: help app test quick test-core test-viewers test-lab test-app test-nightly test-networks test-processors blender test-blender lint format assets docs lock clean
 
 help: ## Show this list
 	@grep -hE '^[a-z -]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z -]+):.*## /  make \1|/' \
@@ -71,6 +71,12 @@ test-processors: $(VENV)/.tools ## Run the numerical tests as older and newer pr
 	@if grep -qw avx512f /proc/cpuinfo; then \
 		OPENBLAS_CORETYPE=SkylakeX $(PYTHON) -m pytest $(WORKERS) -m "not slow" $(ARGS) $(NUMERICAL); \
 	else echo "This processor has no AVX-512: its kernels are not tested."; fi
+
+blender: $(VENV)/.test ## Build the extension for Blender, and a repository of it, in build/blender
+	@$(PYTHON) scripts/blender.py build
+
+test-blender: $(VENV)/.test ## Download Blender as a module (400 MB each) and test the extension in it
+	@$(PYTHON) scripts/blender.py test $(ARGS)
 
 lint: $(VENV)/.javascript ## Check style and types only
 	@$(LINT)

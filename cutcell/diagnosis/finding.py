@@ -68,6 +68,8 @@ class Finding:
         A vertex of each connected component at fault, and the joint to make it rigid to.
     empty : tuple of int
         For each of these a joint without weight that lies in the component, -1 for none.
+    exchanged : tuple of (int, int)
+        Joints, each with the one that should have its weight at these vertices: see `Remapped`.
     """
 
     code: str
@@ -82,6 +84,7 @@ class Finding:
     pose: Pose | None = None
     parts: tuple[tuple[int, int], ...] = ()
     empty: tuple[int, ...] = ()
+    exchanged: tuple[tuple[int, int], ...] = ()
 
     @property
     def title(self) -> str:
@@ -103,6 +106,7 @@ class Finding:
             "repair": self.repair or None,
             "parts": [list(part) for part in self.parts],
             "empty": list(self.empty),
+            "exchanged": [list(pair) for pair in self.exchanged],
             "pose": None if self.pose is None else asdict(self.pose),
         }
 
@@ -127,13 +131,13 @@ def found(
     at = {name: values[name] for name in ("vertices", "faces", "joints") if name in values}
     if not any(map(len, at.values())):
         return
-    kind, more = FINDING_KINDS[code], len(details) - MAX_LINES
-    lines = (*details[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))
+    kind, rest = FINDING_KINDS[code], len(details) - MAX_LINES
+    lines = (*details[:MAX_LINES], *([f"and {rest} more"] if rest > 0 else []))
     message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
-    parts, empty = values.get("parts", ()), values.get("empty", ())
+    more = {name: values.get(name, ()) for name in ("parts", "empty", "exchanged")}
     yield Finding(
         code, severity or kind.severity, message, advice, **at, details=lines, repair=repair,
-        pose=pose, parts=parts, empty=empty,
+        pose=pose, **more,
     )  # fmt: skip
 
 

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..editing.symmetry import find_mirror
-from ..errors import MeshError
 from ..geodesics.fallback import REACHED
 from ..geometry.triangles import label_components
 from ..rig.rows import least
@@ -126,9 +124,8 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
 
 
 def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
-    try:
-        mirror = find_mirror(subject.rig)
-    except MeshError:
+    mirror = subject.mirror
+    if mirror is None:
         return
     partner, swap = mirror.vertex, mirror.joint
     # On the plane itself a vertex is its own partner; joints without a partner are no evidence.

@@ -13,6 +13,7 @@ from ..method import check_resolution
 from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
 from ..runtime.progress import Progress, silent
+from .exchanged import check_exchanged
 from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
 from .kinds import FINDING_KINDS
@@ -25,7 +26,7 @@ from .sweep import check_sweep
 from .weights import check_weights
 
 SHAPE_CHECKS = (check_mesh, check_joints, check_parts)
-WEIGHT_CHECKS = (check_weights, check_leaks, check_far_parts, check_sweep)
+WEIGHT_CHECKS = (check_weights, check_exchanged, check_leaks, check_far_parts, check_sweep)
 
 DIAGNOSED_RESOLUTION = 64
 """R of the graph of a rig that is examined without distances."""

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bones.bones import Bones
+from ..editing.symmetry import Mirror, find_mirror
+from ..errors import MeshError
 from ..geodesics import BoneDistances, bone_distances
 from ..geometry.segments import distance_to_segment
 from ..geometry.welded import WeldedMesh
@@ -122,6 +124,14 @@ class Subject:
     def joint_distance(self) -> NDArray[np.float64]:
         """How far each joint is from the body, in the unit cube; 0 inside; shape (j,)."""
         return self.body.away(self.body.to_unit(self.rig.skeleton.joints))
+
+    @cached_property
+    def mirror(self) -> Mirror | None:
+        """The plane of symmetry; None for a mesh that is not mirrored."""
+        try:
+            return find_mirror(self.rig)
+        except MeshError:
+            return None
 
     @cached_property
     def guess(self) -> DeformJoints:

@@ -25,6 +25,7 @@ from cutcell_app.features.scenes import resolve
 from cutcell_app.features.state import PageState
 from cutcell_app.shell.character import faults
 from cutcell_app.shell.export_controls import changes_of
+from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.export import export_bound
 from cutcell_app.widgets.controls import draw
 from cutcell_app.widgets.rows import Rows
@@ -33,6 +34,7 @@ from cutcell_viewers.finding_scene import finding_marks
 from cutcell_viewers.weights_scene import weight_colors
 from tests.app.loop import settled
 from tests.app.test_bare import bare_arm
+from tests.cutcell.diagnosis.worm import worm
 from tests.viewers.arm import arm_rig
 
 FLIPPED = np.arange(0, 60)
@@ -325,3 +327,20 @@ def test_a_joint_that_a_part_is_made_rigid_to_carries_weight_then(bound, loop):
     settled(bound, loop)
     far_part(bound, loop).click(1)
     assert state.rig.skeleton.deform.all()
+
+
+def test_exchanged_joints_are_mended_by_a_layer_over_the_files_weights(session, loop):
+    sound = worm()
+    session.state.param.update(resolution=16, panel="check")
+    loading.show_rig(session, sound.with_weights(sound.weights[:, [0, 1, 5, 3, 4, 2, 6]]))
+    state = session.state
+    loop.run_until(lambda: state.diagnosis is not None)
+    look_at(session, "exchanged-joints")
+    labels(session)["Exchange these weights"].clicks += 1
+    settled(session, loop)
+    np.testing.assert_array_equal(state.weights, sound.weights)
+    assert "exchanged-joints" not in [one.code for one in state.open_findings]
+    keys.act(session, "undo")
+    loop.rest(session)
+    assert state.edits == Edits()
+    assert "exchanged-joints" in [one.code for one in state.open_findings]

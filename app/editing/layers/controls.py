@@ -11,22 +11,18 @@ from cutcell.runtime.display import count, listed
 from ...document.selection import selected
 from ...document.session import Session
 from ...document.state import State
+from ...looks.mask import chosen_layer as _layer
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from ..compute import stack
 from . import commands
+from .masks import MASKS
 
 ABOUT = (
     "Layers change the weights below them. Strokes go into the chosen painted layer, or a new one."
 )
 NEW = "A new layer covers the selection, or else everything."
 LATE = ("binding",)
-
-
-def _layer(state: State) -> Layer | None:
-    """Return the chosen layer."""
-    layers = state.edits.layers
-    return layers[state.layer] if state.layer is not None and state.layer < len(layers) else None
 
 
 def _rows(state: State) -> dict[str, Any]:
@@ -153,6 +149,7 @@ LAYERS = ui.folded(
             ui.button("Down", margin=ui.BESIDE, **_moves(-1)),
             ui.button("Delete", _delete),
         ),
+        ui.menu("Mask", "texture", MASKS),
         ui.button("Merge down", commands.merge_down, disabled=lambda state: not state.layer),
         visible=lambda state: _layer(state) is not None,
     ),

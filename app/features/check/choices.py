@@ -1,12 +1,13 @@
 """State of the panel Check: findings, and repairs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import param
 
 from cutcell.diagnosis import TITLES, Finding
-from cutcell.editing import Edits
+from cutcell.editing import Edits, Remapped
 
 from ...document.state import Panel
 from ...editing.compute.stack import part_layers
@@ -36,8 +37,16 @@ PANEL = Panel(
 )
 
 
-def is_done(finding: Finding, edits: Edits) -> bool:
-    """Return whether each part that a finding names has a layer that binds it."""
+def exchange(finding: Finding, names: Sequence[str]) -> Remapped:
+    """Return the content of a layer that exchanges the weights of a finding's joints."""
+    return Remapped({names[one]: names[other] for one, other in finding.exchanged})
+
+
+def is_done(finding: Finding, edits: Edits, names: Sequence[str]) -> bool:
+    """Return whether a layer binds each part, or exchanges the joints, that a finding names."""
+    if finding.exchanged:
+        content = exchange(finding, names)
+        return any(layer.is_active and layer.content == content for layer in edits.layers)
     return bool(finding.parts) and {vertex for vertex, _ in finding.parts} <= {*part_layers(edits)}
 
 
@@ -62,9 +71,10 @@ class Choices(param.Parameterized):
 
     @property
     def open_findings(self) -> list[Any]:
-        """The findings of the file but for those of parts that were all bound or kept by now."""
+        """The findings of the file but for those of what was mended or kept by now."""
         findings = () if self.diagnosis is None else self.diagnosis.findings
-        return [one for one in findings if not is_done(one, self.edits)]
+        names = () if self.rig is None else self.rig.skeleton.names
+        return [one for one in findings if not is_done(one, self.edits, names)]
 
     @property
     def selected_finding(self) -> Any:

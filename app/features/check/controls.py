@@ -27,7 +27,7 @@ from ...editing.select.selections import finding_vertices, select_finding
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from .choices import EXPORT, is_done
-from .results import look_at, repair, take_back
+from .results import exchange_joints, look_at, repair, take_back
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -89,7 +89,7 @@ def _exported(state: State) -> list[Any]:
     else:
         findings = state.export_diagnosis.findings
         lines = [_entry(one, EXPORT + one.code) for one in findings
-                 if not is_done(one, state.edits)]  # fmt: skip
+                 if not is_done(one, state.edits, state.rig.skeleton.names)]  # fmt: skip
     return [ui.section("Weights in the export", lines or _line("No faults."), margin=(8, 0))]
 
 
@@ -126,6 +126,8 @@ def _details(session: Session) -> list[Any]:
     rows: list[Any] = [_line(text) for text in details]
     if not state.bare and (len(finding.vertices) or len(finding.faces)):
         rows.append(ui.button("Select its vertices", select_finding, icon="highlight_alt"))
+    if finding.exchanged and not state.bare and state.binding is not None:
+        rows.append(ui.button("Exchange these weights", exchange_joints, icon="swap_horiz"))
     if state.finding.startswith(EXPORT):
         rows += _part_choices(session, finding)
         return rows + _layers(state, finding)

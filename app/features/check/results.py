@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection
 from typing import Any
 
 from cutcell.diagnosis import Diagnosis, diagnose
+from cutcell.editing import Layer, Mask
 from cutcell.errors import ParameterError
 from cutcell.geodesics import BoneDistances
 from cutcell.graph.fingerprint import data_fingerprint
@@ -21,8 +22,9 @@ from ...document.look import set_camera
 from ...document.method import GRAPH, default, method_of
 from ...document.session import Session
 from ...document.state import State
-from ...editing.compute.stack import with_base
-from .choices import EXPORT
+from ...editing.compute.stack import put_layer, with_base
+from ...editing.correct.commands import correct
+from .choices import EXPORT, exchange
 
 
 def watch(session: Session) -> None:
@@ -129,6 +131,19 @@ class Repairing(Task):
 def repair(session: Session, codes: Collection[str]) -> None:
     """Repair some findings, and bind what comes of it."""
     session.tasks.add(Repairing(session, codes))
+
+
+def exchange_joints(session: Session) -> None:
+    """Put a layer that exchanges the weights of the chosen finding's joints where it says."""
+    state, finding = session.state, session.state.selected_finding
+    if finding is None or not finding.exchanged:
+        return
+    edits = state.edits
+    if not state.finding.startswith(EXPORT):  # it is about the file's weights
+        edits = with_base(edits, from_file=True)
+    content, mask = exchange(finding, state.rig.skeleton.names), Mask(vertices=finding.vertices)
+    session.history.part()
+    correct(session, put_layer(edits, Layer(content, mask, f"Mended: {finding.title}"))[0])
 
 
 def take_back(session: Session) -> None:

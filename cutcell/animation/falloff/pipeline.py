@@ -72,11 +72,11 @@ class RigFalloff:
     def with_rigid_parts(self, weights: csr_array) -> csr_array:
         """Drape garments over the body; make plates, wheels, eyes and buttons rigid."""
         graph, independent = self.distances.graph, self.independent
-        containment = self.division.containment
+        containment, spread = self.division.containment, weights
         if len(containment) > 1:
             weights = drape(graph, containment, self.diffusion, weights, independent)
             weights = make_rigid(graph.mesh, weights, independent)
-        return attach_accessories(graph, containment, weights, independent)
+        return attach_accessories(graph, containment, weights, spread, independent)
 
 
 def subtract_floor(weights: csr_array) -> csr_array:

@@ -90,6 +90,13 @@ class Mask(ByValue):
         pairs = (("vertices", self.vertices), ("strengths", self.strengths))
         return {name: packed(array) for name, array in pairs if array is not None}
 
+    @classmethod
+    def from_data(cls, where: str, value: Any) -> Mask:
+        """Read what `to_data` returns."""
+        entries = with_keys(where, value, [one.name for one in fields(cls)])
+        with naming(where):
+            return cls(**entries)
+
 
 EVERYWHERE = Mask()
 
@@ -162,10 +169,10 @@ class Layer:
         data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on"])
         try:
             with naming(where):
-                mask = with_keys("mask", data.pop("mask", {}), [one.name for one in fields(Mask)])
+                mask = Mask.from_data("mask", data.pop("mask", {}))
                 make = getattr(kind, "from_data", kind)
                 content = make(**{key: data.pop(key) for key in own if key in data})
                 data.pop("kind")
-                return cls(content, Mask(**mask), **data)
+                return cls(content, mask, **data)
         except TypeError:
             raise ParameterError(f"{where} needs {' and '.join(own)}") from None

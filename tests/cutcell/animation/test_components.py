@@ -13,7 +13,7 @@ from cutcell.animation.falloff.containment import (
     make_rigid,
     ramp,
 )
-from cutcell.animation.falloff.rigid_accessories import attach_accessories
+from cutcell.animation.falloff.rigid_accessories import attach, attach_accessories
 from cutcell.geodesics import Bones
 from cutcell.geometry.triangles import label_components
 from cutcell.geometry.welded import WeldedMesh
@@ -91,6 +91,32 @@ def test_a_button_follows_what_it_sits_on():
     assert 0.3 < weights[-1, 0] < 0.7
 
 
+def test_what_an_accessory_is_near_counts_beside_what_it_touches():
+    vertices, faces = joined(grid_box(20), button([0.5, 0.1, 0.23]))
+    graph = build_graph(TriangleMesh(vertices, faces), 16, connectivity="any")
+    is_second = (graph.mesh.component == 1) | (graph.mesh.points[:, 0] > 0.5)
+    weights = csr_array(np.where(is_second[:, None], [0.0, 1.0], [1.0, 0.0]))
+    which = np.array([False, True])
+    touching = attach(graph, which, weights).toarray()[graph.mesh.component == 1]
+    both = attach(graph, which, weights, weights).toarray()[graph.mesh.component == 1]
+    assert (touching[:, 1] < 0.2).all()
+    assert (both[:, 1] > 0.4).all()
+    np.testing.assert_array_equal(both, both[[0] * 8])
+
+
+def test_a_rivet_on_a_plate_follows_the_plate():
+    vertices, faces = grid_box(20)
+    plate = vertices * [0.12, 0.5, 0.1] + [0.47, 0.05, 0.21]
+    rivet, few = button([0, 0, 0])
+    rivet = rivet * 0.25 + [0.48, 0.1, 0.245]
+    vertices, faces = joined(joined((vertices, faces), (plate, faces)), (rivet, few))
+    graph = build_graph(TriangleMesh(vertices, faces), 32, connectivity="any")
+    of_plate = graph.mesh.component == 1
+    weights = csr_array(np.where(of_plate[:, None], [0.0, 1.0], [1.0, 0.0]))
+    attached = attach(graph, np.array([False, True, True]), weights, weights).toarray()
+    assert (attached[graph.mesh.component == 2, 1] > 0.5).all()
+
+
 def sheet():
     """Make an open sheet over the bar of `grid_box`."""
     vertices, faces = grid_box(16, 8, 1, size=(0.8, 0.4, 0.26))
@@ -122,7 +148,7 @@ def test_a_body_in_patches_has_no_accessories():
     containment[0, 0] = 1
     weights = csr_array(np.random.default_rng(0).random((len(surface.points), 2)))
     independent = np.zeros(len(containment), bool)
-    assert attach_accessories(graph, containment, weights, independent) is weights
+    assert attach_accessories(graph, containment, weights, weights, independent) is weights
 
 
 def test_a_lone_component_has_no_penalty():

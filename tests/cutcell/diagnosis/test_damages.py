@@ -44,6 +44,7 @@ def test_damage_is_named_with_its_elements(name, tmp_path):
 def test_every_kind_of_finding_has_a_damage_or_is_known_to_have_none():
     tried = {code for code, _ in DAMAGES.values()}
     elsewhere = {"unreadable", "cyclic-joints", "boneless-components"}  # see test_diagnose.py
+    elsewhere |= {"exchanged-joints", "other-side"}  # see test_exchanged.py
     elsewhere |= {"far-parts", "hollow-body"}  # see test_far_parts.py and test_omitted.py
     suspicious = {"stray-weights", "weight-islands", "asymmetric-weights", *SWEEP}  # test_leaks.py
     assert tried | elsewhere | suspicious == set(TITLES)

@@ -47,6 +47,7 @@ ALL = Edits(
     base="file",
     method={"falloff": "paper", "alpha": 0.3},
     layers=LAYERS,
+    selections={"left hand": Mask(vertices=MANY), "cap": Mask(part=3)},
 )
 
 
@@ -60,6 +61,8 @@ def test_json_and_back_is_the_same(tmp_path):
     assert Edits.load(tmp_path / "c.json") == ALL
     assert not Edits.from_json(Edits().to_json())
     assert Edits(base="file")
+    assert Edits(selections={"all": Mask()})
+    assert Edits(selections={"one": Mask(part=1)}) != Edits(selections={"one": Mask(part=2)})
     assert LAYERS[3].content.weights == {"head": 0.75, "tail": 0.25}
 
 
@@ -95,6 +98,9 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"base": "mine"}', "base must be"),
         ('{"method": {"resolution": 1}}', "resolution must be"),
         ('{"method": {"resolutoin": 32}}', 'method has no .resolutoin.; did you mean "resolution"'),
+        ('{"selections": {"": {}}}', "selections go by names"),
+        ('{"selections": {"a": {"vertexes": 1}}}', 'the selection "a" has no .vertexes.'),
+        ('{"selections": {"a": {"vertices": [2, 1]}}}', 'the selection "a": .* must ascend'),
         ('{"layers": {}}', "layers must be a list"),
         ('{"layers": [{"kind": "glued"}]}', 'layer 1 must have a "kind": one of computed'),
         ('{"layers": [{"kind": "filled"}]}', "layer 1 needs weights"),

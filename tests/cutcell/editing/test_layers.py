@@ -64,6 +64,11 @@ def plain():
             'layer 1, "Filled", does not fit worm.*no joint "hed"',
         ),
         ({"layers": [Layer(Painted([0], ["hed"], [[1]]))]}, ParameterError, 'no joint "hed"'),
+        (
+            {"selections": {"a": Mask(vertices=[10**6])}},
+            ParameterError,
+            'the selection "a" names the vertex 1000000',
+        ),
         ({"layers": [Layer(Remapped({"head": "hed"}))]}, ParameterError, 'no joint "hed"'),
         ({"layers": [Layer(Locked(["hed"]))]}, ParameterError, 'no joint "hed"'),
         ({"layers": [Layer(Computed(gain={"hed": 2}))]}, ParameterError, 'no joint "hed"'),
