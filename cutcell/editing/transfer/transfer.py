@@ -127,7 +127,8 @@ def transfer(
     distance : float
         Greatest distance of a match, as part of the diagonal of the source's bounding box.
     angle : float
-        Greatest angle between the normals of a match, in degrees, 0 to 180.
+        Greatest angle between the normals of a match, in degrees, 0 to 180. Normals do not count
+        within three tenths of the distance.
     flipped : bool
         Match opposite normals, too, such as those of the inside of layered cloth.
     joints : sequence of int or str, optional
