@@ -95,14 +95,14 @@ def plain(body: Rig, mesh: TriangleMesh) -> NDArray[np.float64]:
     return inpaint(welded, fits, weights)[welded.index]
 
 
-def ours(body: Rig, mesh: TriangleMesh) -> NDArray[np.float64]:
+def transferred(body: Rig, mesh: TriangleMesh) -> NDArray[np.float64]:
     """Return weights by `cutcell.transfer`."""
     return cutcell.transfer(body, mesh, max_influences=None).weights
 
 
 def garments() -> Iterator[tuple[str, str, int, list[float]]]:
     """Yield the character, the garment, its vertices, and the error of each method."""
-    ways: tuple[Callable[[Rig, TriangleMesh], NDArray], ...] = (nearest, plain, ours)
+    ways: tuple[Callable[[Rig, TriangleMesh], NDArray], ...] = (nearest, plain, transferred)
     for file, (body, worn) in DRESSED.items():
         rig = cutcell.load(SHARED / file)
         source = part_of(rig, body)
@@ -137,7 +137,12 @@ def details() -> Iterator[tuple[str, int, float, float]]:
             coarse = full.simplify_quadric_decimation(int(part * len(faces)))
             mesh = TriangleMesh(np.asarray(coarse.vertices), np.asarray(coarse.triangles))
             level, made = Rig(mesh, source.skeleton), nearest(source, mesh)
-            yield Path(file).stem, len(mesh.faces), error, over_area(level, ours(bound, mesh), made)
+            yield (
+                Path(file).stem,
+                len(mesh.faces),
+                error,
+                over_area(level, transferred(bound, mesh), made),
+            )
 
 
 def over_area(rig: Rig, weights: NDArray[np.float64], reference: NDArray[np.float64]) -> float:

@@ -92,24 +92,24 @@ def with_saved_weights(rig: Rig, paths: Sequence[Path]) -> Rig:
     """
     shape = (len(rig.mesh.vertices), len(rig.skeleton.names))
     weights = np.zeros(shape) if rig.weights is None else rig.weights.copy()
-    taken: set[int] = set()
+    used: set[int] = set()
     for path in paths:
         with naming(path):
             for one in read_weights(path):
-                number, order = _part_of(rig, one, taken)
-                taken.add(number)
+                number, order = _part_of(rig, one, used)
+                used.add(number)
                 rows = np.zeros((len(one.weights), shape[1]))
                 np.add.at(rows.T, _joints_of(rig, one), one.weights.T)
                 weights[rig.parts[number].vertices] = rows[order]
-    if rig.weights is None and len(taken) < len(rig.parts):
-        rest = [part.name for k, part in enumerate(rig.parts) if k not in taken]
+    if rig.weights is None and len(used) < len(rig.parts):
+        rest = [part.name for k, part in enumerate(rig.parts) if k not in used]
         raise WeightsError(f"no weights for {', '.join(rest)}; give a file for each mesh")
     return rig.with_weights(weights)
 
 
-def _part_of(rig: Rig, one: MeshWeights, taken: set[int]) -> tuple[int, NDArray[np.intp]]:
+def _part_of(rig: Rig, one: MeshWeights, used: set[int]) -> tuple[int, NDArray[np.intp]]:
     """Return the mesh of a rig that weights are for, and the row for each of its vertices."""
-    left = [k for k in range(len(rig.parts)) if k not in taken]
+    left = [k for k in range(len(rig.parts)) if k not in used]
     named = [k for k in left if _same_mesh(rig.parts[k].name, one.mesh)] or left
     fits = [(*_order(rig, rig.parts[k], one), k) for k in named]
     if not fits or min(fits, key=lambda fit: fit[0])[0] > MAX_DISTANCE:
