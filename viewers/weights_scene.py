@@ -151,6 +151,12 @@ def symmetry_colors(values: NDArray[np.float64]) -> tuple[dict[str, Any], Legend
     return {"colors": colors, "reading": reading}, legend
 
 
+def mask_colors(strengths: NDArray[np.float64], name: str) -> tuple[dict[str, Any], Legend]:
+    """Colour each vertex by the strength of a layer's mask, (n,)."""
+    style = {"scalars": strengths.astype(np.float32), "colormap": "weight", "limits": (0.0, 1.0)}
+    return {**style, "reading": Reading("Mask ")}, Legend(f"Mask of {name}", "weight", "0", "1")
+
+
 def bone_difference_colors(
     rig: Rig, weights: ArrayLike, truth: ArrayLike, joint: int, names: tuple[str, str]
 ) -> tuple[dict[str, Any], Legend]:

@@ -14,6 +14,7 @@ from cutcell_viewers.weights_scene import (
     count_colors,
     difference_colors,
     dominant_colors,
+    mask_colors,
     symmetry_colors,
     weight_colors,
 )
@@ -22,6 +23,7 @@ from ..document.state import State
 from .character import BODY_OPACITY_WITH_PATH, character
 from .components import seen_apart
 from .explanation import explained_paths
+from .mask import chosen_layer, mask_strengths
 from .selection import isolated, outlined, selection_marks
 
 DIFFERENCES = ("difference", "bone_difference")
@@ -67,7 +69,8 @@ def weights_look(
     which = state.joint if colors in ("bone", "bone_difference") else -1
     of_rig = rig.mesh, rig.weights, rig.skeleton.names
     how = state.weight_scale, state.weight_limit, state.asymmetry
-    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how)
+    layer = chosen_layer(state) if colors == "mask" else None
+    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how, layer)
     style, legend = state.memo(name, inputs, lambda: coloring(state, colors, weights))
     coloured = colors in ("mix", "dominant")
     if coloured:
@@ -85,7 +88,7 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     """
     posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
     whole = weights_shown(state) == "symmetry"  # mirror images change with what is painted
-    if posed or whole or weights_seen(state) is not state.weights:
+    if posed or whole or weights_shown(state) == "mask" or weights_seen(state) is not state.weights:
         return {}
     file_weights = state.rig.weights
     few = SimpleNamespace(
@@ -113,6 +116,8 @@ def weights_seen(state: State) -> Any:
 def weights_shown(state: State) -> str:
     """Return the choice of colours, but no difference if there is only one weighting."""
     two = state.binding is not None and state.rig.weights is not None
+    if state.weights_shown == "mask" and chosen_layer(state) is None:
+        return "mix"
     if state.weights_shown == "symmetry" and state.asymmetry is None:
         return "mix"
     if state.weights_shown in DIFFERENCES and not two:
@@ -133,6 +138,8 @@ def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any],
         if state.truth != "file":
             pair, who = pair[::-1], who[::-1]
         return bone_difference_colors(rig, *pair, state.joint, who)
+    if colors == "mask":
+        return mask_colors(mask_strengths(state), chosen_layer(state).title)
     if colors == "symmetry":
         return symmetry_colors(state.asymmetry.values)
     if colors == "count":

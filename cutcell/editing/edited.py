@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..animation.falloff.adjustments import Adjustments
+from ..checks import one_line
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..method import Method
@@ -55,6 +56,8 @@ def edited_rig(rig: Rig, edits: Edits) -> Rig:
         raise WeightsError(f"{rig.name} has no weights in its file to begin from")
     for number, layer in enumerate(edits.layers, start=1):
         _check_layer(rig, layer, f'layer {number}, "{layer.title}",')
+    for name, mask in edits.selections.items():
+        _check_vertices(rig, f'the selection "{one_line(name)}"', mask.part, mask.vertices)
     deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
     for name, one in edits.joints.items():
         joint = joint_index(rig.skeleton, name)
@@ -73,15 +76,9 @@ def edited_rig(rig: Rig, edits: Edits) -> Rig:
 
 def _check_layer(rig: Rig, layer: Layer, what: str) -> None:
     """Raise an error if a layer does not fit a rig."""
-    content, mask, count = layer.content, layer.mask, len(rig.mesh.vertices)
-    last = [-1 if mask.part is None else mask.part]
-    lists = [mask.vertices, content.vertices if isinstance(content, Painted) else None]
-    last += [int(one[-1]) for one in lists if one is not None and len(one)]
-    if max(last) >= count:
-        raise ParameterError(
-            f"{what} names the vertex {max(last)}, but {rig.name} has only {count} (numbered from "
-            "0); is it of another character?"
-        )
+    content, mask = layer.content, layer.mask
+    painted = content.vertices if isinstance(content, Painted) else None
+    _check_vertices(rig, what, mask.part, mask.vertices, painted)
     with naming(f"{what} does not fit {rig.name}"):
         columns = [joint_index(rig.skeleton, name) for name in content.joints_named()]
     if isinstance(content, FromFile | Locked) and rig.weights is None:
@@ -92,6 +89,19 @@ def _check_layer(rig: Rig, layer: Layer, what: str) -> None:
         if bad.any():
             name, vertex = content.joints[rows.col[bad][0]], content.vertices[rows.row[bad][0]]
             raise ParameterError(f'the file cannot store weight of "{name}" at vertex {vertex}')
+
+
+def _check_vertices(
+    rig: Rig, what: str, part: int | None, *lists: NDArray[np.int32] | None
+) -> None:
+    """Raise an error if a part, or ascending lists of vertices, are not of a rig."""
+    count, last = len(rig.mesh.vertices), [-1 if part is None else part]
+    last += [int(one[-1]) for one in lists if one is not None and len(one)]
+    if max(last) >= count:
+        raise ParameterError(
+            f"{what} names the vertex {max(last)}, but {rig.name} has only {count} (numbered from "
+            "0); is it of another character?"
+        )
 
 
 def joints_measured(content: Computed, method: Method) -> tuple[int | None, float]:

@@ -14,7 +14,7 @@ from ..checks import assign, check_choice, check_flag, check_kind, check_number,
 from ..errors import FileError, ParameterError
 from ..runtime.writing import write_all
 from .layers.contents import Computed, FromFile, Rename, checked_options
-from .layers.layer import Layer
+from .layers.layer import Layer, Mask
 from .layers.packing import joint_names, mapping, naming, with_keys
 
 Base = Literal["computed", "file"]
@@ -89,6 +89,8 @@ class Edits:
         them; `cutcell.bind` takes its own method.
     layers : sequence of Layer
         From bottom to top.
+    selections : mapping of str to Mask
+        Sets of vertices that a person saved, by their names. They change nothing.
 
     Raises
     ------
@@ -119,6 +121,7 @@ class Edits:
     base: Base = "computed"
     method: Mapping[str, Any] = field(default_factory=dict)
     layers: Sequence[Layer] = ()
+    selections: Mapping[str, Mask] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         joints = mapping("joints", self.joints)
@@ -133,11 +136,18 @@ class Edits:
         check_choice("base", self.base, ("computed", "file"))
         removed = joint_names("removed", self.removed)
         method = checked_options("method", self.method)
-        assign(self, joints=joints, removed=removed, method=method, layers=tuple(self.layers))
+        selections = mapping("selections", self.selections)
+        for name, mask in selections.items():
+            if not isinstance(name, str) or not name.strip():
+                raise ParameterError(f"selections go by names, not by {shown(name)}")
+            check_kind(f'the selection "{one_line(name)}"', mask, Mask)
+        assign(self, joints=joints, removed=removed, method=method, layers=tuple(self.layers),
+               selections=selections)  # fmt: skip
 
     def __bool__(self) -> bool:
         """Return whether there are any edits."""
-        return bool(self.joints or self.removed or self.layers or self.base == "file")
+        changes = self.joints or self.removed or self.layers or self.base == "file"
+        return bool(changes or self.selections)
 
     @property
     def partners(self) -> dict[str, str]:
@@ -193,6 +203,7 @@ class Edits:
             "joints": {name: _changed_fields(one) for name, one in self.joints.items()},
             "removed": list(self.removed),
             "layers": [layer.to_data() for layer in self.layers],
+            "selections": {name: mask.to_data() for name, mask in self.selections.items()},
         }
         return json.dumps({k: v for k, v in data.items() if v}, indent=indent, ensure_ascii=False)
 
@@ -218,6 +229,10 @@ class Edits:
         if not isinstance(listed, list):
             raise ParameterError(f"layers must be a list, not {shown(listed)}")
         data["layers"] = [Layer.from_data(f"layer {k}", one) for k, one in enumerate(listed, 1)]
+        data["selections"] = {
+            name: Mask.from_data(f'the selection "{one_line(name)}"', value)
+            for name, value in mapping("selections", data.get("selections", {})).items()
+        }
         return cls(**data)
 
     @classmethod

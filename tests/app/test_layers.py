@@ -283,7 +283,8 @@ def test_the_panel_shows_the_stack_and_changes_the_chosen_layer(bound, loop):
 
 
 def test_layers_are_added_over_the_selection_or_everything(bound, loop):
-    (menu,) = draw(bound, LAYERS).select(pmui.MenuButton)
+    menus = draw(bound, LAYERS).select(pmui.MenuButton)
+    menu = next(one for one in menus if one.label == "Add layer")
     offered = [item["label"] for item in menu.items]
     assert offered == list(NEW_LAYERS)
     NEW_LAYERS["Smoothed"](bound)

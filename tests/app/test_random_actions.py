@@ -19,9 +19,11 @@ from cutcell_app.document.opening import Request
 from cutcell_app.document.session import Session
 from cutcell_app.editing.binding import recovery
 from cutcell_app.editing.binding.recovery import is_current
+from cutcell_app.editing.brush.strokes import clear_selection, select
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.correct import moving, templates
-from cutcell_app.editing.select import bones
+from cutcell_app.editing.layers.masks import MASKS
+from cutcell_app.editing.select import bones, saved
 from cutcell_app.features.check import results as check
 from cutcell_app.features.learn import steps
 from cutcell_app.features.learn.lesson import read
@@ -83,6 +85,22 @@ def swap_bones(session, rng, files):
     rng.choice((bones.swap, bones.replace_bone))(session)
 
 
+def change_mask(session, rng, files):
+    state = session.state
+    state.layer = rng.randrange(len(state.edits.layers)) if state.edits.layers else None
+    select(session, np.arange(len(state.rig.mesh.vertices)) % rng.randint(2, 5) == 0)
+    MASKS[rng.choice(list(MASKS))](session)
+    state.message = None
+    clear_selection(session)
+
+
+def save_selection(session, rng, files):
+    select(session, np.arange(len(session.state.rig.mesh.vertices)) % rng.randint(2, 5) == 0)
+    saved.save(session, rng.choice("ab"))
+    rng.choice((saved.forget, clear_selection))(session)
+    clear_selection(session)
+
+
 def export_something(session, rng, files):
     export.export_numbers(session, "weights", "npz", lambda *file: files.append(file))
 
@@ -100,6 +118,8 @@ ACTIONS = (
     *[correct_something] * 3,
     *[move] * 2,
     swap_bones,
+    change_mask,
+    save_selection,
     export_something,
     undo,
     open_another,
@@ -178,7 +198,9 @@ class Person:
 
     def edit(self):
         if not self.session.state.bare and self.session.state.binding is not None:
-            action = self.rng.choice((correct_something, move, swap_bones))
+            action = self.rng.choice(
+                (correct_something, move, swap_bones, change_mask, save_selection)
+            )
             action(self.session, self.rng, self.files)
 
     def choose(self):

@@ -14,7 +14,7 @@ from cutcell_app.editing.compute import operations as ops
 from cutcell_app.editing.compute.selected import Selected
 from cutcell_app.editing.correct.commands import choose_file, correct
 from cutcell_app.editing.layers.commands import STEPS
-from cutcell_app.editing.select import operations, selections
+from cutcell_app.editing.select import operations, saved, selections
 from cutcell_app.editing.select.controls import SELECTION, WEIGHT_SCALE
 from cutcell_app.editing.select.operations import OPERATIONS
 from cutcell_app.editing.select.selections import SELECTIONS
@@ -472,3 +472,38 @@ def test_tools_are_neither_undone_nor_in_the_address(bound, loop):
     own = state.rig
     loading.show_rig(bound, replace(own, name="another"))
     loop.rest(bound)
+
+
+def test_selections_are_saved_by_name_with_the_edits(bound, loop):
+    state = bound.state
+    chosen, before = some(bound), state.weights
+    saved.save(bound, " hand ")
+    loop.rest(bound)
+    assert np.array_equal(state.weights, before)
+    assert Edits.from_json(state.edits.to_json()) == state.edits
+    keys.act(bound, "select none")
+    menu = next(
+        one for one in draw(bound, SELECTION).select(pmui.Select) if one.label == "Saved selection"
+    )
+    menu.value = "None"
+    assert selected(state) is None
+    menu.value = "hand"
+    assert np.array_equal(selected(state), chosen)
+    saved.forget(bound)
+    assert not state.edits
+    keys.act(bound, "undo")
+    loop.rest(bound)
+    assert [*state.edits.selections] == ["hand"]
+    keys.act(bound, "select none")
+    saved.save(bound, "foot")
+    assert "select some to save them" in state.message[1]
+
+
+def test_sides_are_selected_by_the_menu(session, loop):
+    session.state.param.update(resolution=16, graph_resolution=0)
+    loading.show_rig(session, small_rig())
+    loop.rest(session)
+    x = session.state.rig.mesh.vertices[:, 0]
+    for name, expected in (("Left side", x > 1e-2), ("Right side", x < -1e-2)):
+        SELECTIONS[name](session)
+        assert np.array_equal(selected(session.state), expected), name

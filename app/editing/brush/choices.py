@@ -19,7 +19,7 @@ class Choices(param.Parameterized):
     brush = param.Boolean(False, label="Paint")
     brush_mode: param.Selector[str] = param.Selector(
         default="add",
-        objects={mode.capitalize(): mode for mode in (*get_args(BrushMode), "select")},
+        objects={mode.capitalize(): mode for mode in (*get_args(BrushMode), "select", "mask")},
     )
     brush_radius = param.Number(
         0.06, bounds=(MIN_RADIUS, MAX_RADIUS), step=0.005, label="Radius (% of size)",

@@ -6,6 +6,7 @@ from ..correct.moving import mirror_of
 
 SUMMARIES = {
     "smooth": "Smooths all unlocked joints.",
+    "mask": "Paints the mask of the chosen layer. Ctrl erases.",
     "select": "Select the vertices that other tools may paint. Ctrl subtracts.",
 }
 HOW = (

@@ -5,23 +5,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.errors import CutcellError
+from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import TriangleMesh
 from cutcell_viewers.skin import Skin
 
 from ...document.selection import Selection, selected
 from ...document.session import Session
 from ...document.state import State
-from ...looks.weights import painted_colors
+from ...looks.mask import mask_strengths
+from ...looks.weights import painted_colors, weights_shown
 from ...server.protocol import sent
 from ...server.protocol.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
 from ..layers.commands import put_rows
+from ..layers.masks import NO_LAYER, put_mask
 from .choices import MAX_RADIUS, MIN_RADIUS, MIN_STRENGTH
 
-WITHOUT_JOINT = ("smooth", "select")
+WITHOUT_JOINT = ("smooth", "select", "mask")
 """Modes in which the brush does the same to all joints."""
 LARGER = 1.25
 """How many times as large the next radius is."""
@@ -34,6 +36,8 @@ def watch(session: Session) -> None:
     controller = BrushController(session)
     session.view.listen(Paint, controller.paint)
     follow(lambda *events: activate(session), "brush")
+    follow(lambda event: activate(session) if "mask" in (event.old, event.new) else None,
+           "brush_mode")  # fmt: skip
     follow(lambda event: deactivate(session) if event.new else None, "joint_handle")
 
 
@@ -43,6 +47,8 @@ def activate(session: Session) -> None:
     if not state.brush:
         return
     colors_of = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
+    if "mask" in (state.brush_mode, colors_of):
+        colors_of = "mask" if state.brush_mode == "mask" else "bone"
     state.param.update(
         joint_handle=False, weights_of="ours", weights_shown=colors_of, pose_colors="weights",
         heat=False,
@@ -142,6 +148,8 @@ class BrushController:
         self._of: Any = None
         self._selects: bool | None = None
         self._selected: NDArray[np.bool_] | None = None
+        self._erases: bool | None = None
+        self._mask: NDArray[np.float64] | None = None
 
     def paint(self, message: Paint) -> None:
         """Continue a stroke, show its effect on the weights, and adopt it when it ends."""
@@ -159,6 +167,9 @@ class BrushController:
             stroke.pass_over(corners, points[:, 3:])
         if self._selects is not None:
             self._select(stroke, message)
+            return
+        if self._mask is not None:
+            self._paint_mask(stroke, message)
             return
         vertices, rows = stroke.painted()
         if message.cancelled:
@@ -181,11 +192,16 @@ class BrushController:
             return
         mesh = state.rig.mesh
         surface = _surface(session, mesh)
-        self._selects, within = None, selected(state)
+        self._selects, self._mask, within = None, None, selected(state)
         new_mode: Any = mode or state.brush_mode
         if state.brush_mode == "select":
             self._selects, self._selected = mode != "subtract", within
             new_mode, within = "smooth", None
+        if state.brush_mode == "mask":
+            self._mask, self._erases, new_mode = mask_strengths(state), mode == "subtract", "smooth"
+            if self._mask is None:
+                session.fail(ParameterError(NO_LAYER))
+                return
         try:
             brush = Brush(radius_of(state), new_mode, state.brush_strength, state.brush_value)
             self._stroke = Stroke(
@@ -215,6 +231,24 @@ class BrushController:
         session.view.answer(painted={})
         if message.cancelled or message.done:
             self._stroke = None
+
+    def _paint_mask(self, stroke: Stroke, message: Paint) -> None:
+        """Raise or lower the strengths of the chosen layer's mask."""
+        assert self._mask is not None
+        vertices, cover = stroke.covered()
+        strengths = self._mask.copy()
+        if not message.cancelled:
+            goal = 0.0 if self._erases else 1.0
+            strengths[vertices] += cover * (goal - strengths[vertices])
+        scalars = strengths[vertices].astype(np.float32)
+        shown: Any = {"vertices": vertices.astype(np.uint32)}
+        if weights_shown(self._session.state) == "mask":
+            shown["scalars"] = scalars
+        self._session.view.answer(painted=shown)
+        if message.cancelled or message.done:
+            self._stroke = None
+        if message.done and not message.cancelled:
+            put_mask(self._session, strengths)
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
         colors = painted_colors(self._session.state, vertices, rows)

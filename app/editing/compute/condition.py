@@ -15,6 +15,8 @@ from cutcell.errors import ParameterError, WeightsError
 from cutcell.geodesics import BoneDistances
 from cutcell.rig import Rig
 
+from .mirror import side_of
+
 MAX_LENGTH = 1000
 MAX_DEPTH = 40
 """Parentheses and negations inside each other."""
@@ -26,6 +28,9 @@ OPERATOR = re.compile(r"<=|>=|==|!=|[<>=≤≥≠]")
 QUOTED = re.compile(r"""(["'])(.*?)\1""")
 NAME_END = re.compile(r"\s|[<>=!≤≥≠)]|$")
 BARE_NAME = re.compile(r"(.*?)(?=\s+(?:and|or)\b|\s*[<>=!≤≥≠)]|\s*$)", re.IGNORECASE)
+
+AXIS = re.compile(r"[xyz]\b", re.IGNORECASE)
+SIDES = {"left": 1.0, "right": -1.0, "middle": 0.0}
 
 Value = NDArray[np.float64] | float
 COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
@@ -49,9 +54,11 @@ def vertices_where(
     A condition compares values by <, <=, >, >=, = and !=, and joins comparisons by `and`, `or`,
     `not` and parentheses. Values are numbers, also in percent, and of each vertex: `weight of J`,
     `file weight of J`, `distance to J` and `distance` through the body in the file's units,
-    `influences` and `part`, the number of its connected component, from 1, the largest. J is the
-    name of a joint, in quotes if it is ambiguous. `distance` alone is that to the joint named
-    before it, or else to the nearest.
+    `influences`, `part`, the number of its connected component, from 1, the largest, its position
+    `x`, `y` and `z` in the file, and `side`, which is `left`, `right` or `middle`. J is the name of
+    a joint, in quotes if it is ambiguous, or a pattern such as *_l: weights of all joints that fit
+    are added, and the nearest of them counts. `distance` alone is that to the joint named before
+    it, or else to the nearest.
 
     Parameters
     ----------
@@ -84,7 +91,7 @@ class _Parser:
     _distances: BoneDistances | None
     _at: int = 0
     _depth: int = 0
-    _joint: int | None = None
+    _joints: list[int] | None = None
 
     def whole(self) -> Any:
         result = self._either()
@@ -140,7 +147,7 @@ class _Parser:
                 self._fail("`of` and a joint")
             if weights is None:
                 raise WeightsError(f"{self._rig.name} has no weights of its own to compare")
-            return np.asarray(weights[:, self._named()])
+            return np.asarray(weights[:, self._named()].sum(axis=1))
         if of_file:
             self._fail("`weight of` and a joint")
         if self._word("distance"):
@@ -152,21 +159,32 @@ class _Parser:
         if self._word("part"):
             mesh = self._rig.mesh.welded
             return mesh.component[mesh.index].astype(float) + 1
-        self._fail("a number, weight, file weight, distance, influences or part")
+        if axis := self._match(AXIS):
+            return np.asarray(self._rig.mesh.vertices[:, "xyz".index(axis.group().lower())])
+        if self._word("side"):
+            return side_of(self._rig).astype(float)
+        for name, value in SIDES.items():
+            if self._word(name):
+                return value
+        self._fail("a number, weight, file weight, distance, influences, part, side, x, y or z")
 
     def _distance(self) -> Value:
         if self._distances is None:
             raise ParameterError("distances are compared once the character is bound; bind it")
-        size, joint = self._distances.graph.lattice.size, self._joint
-        if joint is None:
+        size, joints = self._distances.graph.lattice.size, self._joints
+        if joints is None:
             return np.asarray(self._distances.least * size, float)
-        if not self._rig.skeleton.deform[joint]:
-            name = self._rig.skeleton.names[joint]
+        deform = [joint for joint in joints if self._rig.skeleton.deform[joint]]
+        if not deform:
+            name = self._rig.skeleton.names[joints[0]]
             raise ParameterError(f'"{name}" carries no weight, so there is no distance to it')
-        return np.asarray(self._distances.on_mesh(joint) * size)
+        return np.min([self._distances.on_mesh(joint) * size for joint in deform], axis=0)
 
-    def _named(self) -> int:
-        """Read the name of a joint, without quotes the longest that the skeleton has."""
+    def _named(self) -> list[int]:
+        """Read the name of a joint, without quotes the longest that the skeleton has; or a pattern.
+
+        Returns the joints, at least one.
+        """
         if quoted := self._match(QUOTED):
             name = quoted.group(2)
         else:
@@ -177,8 +195,15 @@ class _Parser:
             if not name:
                 self._fail("a joint")
             self._at += len(name)
-        self._joint = joint_index(self._rig.skeleton, name)
-        return self._joint
+        self._joints = self._fitting(name) if "*" in name else []
+        self._joints = self._joints or [joint_index(self._rig.skeleton, name)]
+        return self._joints
+
+    def _fitting(self, pattern: str) -> list[int]:
+        """Return the joints whose names fit a pattern, in whatever case."""
+        regex = re.compile(re.escape(pattern).replace(r"\*", ".*"), re.IGNORECASE)
+        names = self._rig.skeleton.names
+        return [joint for joint, name in enumerate(names) if regex.fullmatch(name)]
 
     def _rest(self) -> str:
         self._at += len(self._text[self._at :]) - len(self._text[self._at :].lstrip())

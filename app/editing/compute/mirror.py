@@ -1,10 +1,12 @@
 """The plane of symmetry of a skeleton, whatever its mesh."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cutcell.editing.symmetry import (
     JOINT_TOLERANCE,
     MIN_MIRRORED,
+    VERTEX_TOLERANCE,
     Mirror,
     mesh_diagonal,
     mirror_planes,
@@ -13,6 +15,7 @@ from cutcell.editing.symmetry import (
 )
 from cutcell.errors import SkeletonError
 from cutcell.rig import Rig
+from cutcell.rig.names import plain
 
 
 def joint_mirror(rig: Rig) -> Mirror:
@@ -38,3 +41,21 @@ def joint_mirror(rig: Rig) -> Mirror:
             "joints have a partner on the other side"
         )
     return best
+
+
+def side_is_positive(rig: Rig, plane: Mirror, side: str) -> bool:
+    """Return whether a side, "l" or "r", is that of larger coordinates, by the names of joints."""
+    names = np.array([plain(name)[1] for name in rig.skeleton.names])
+    offset = rig.skeleton.joints[:, plane.axis] - plane.position
+    left, right = (offset[names == one] for one in "lr")
+    if not len(left) or not len(right):  # characters look along z, and x points to their left
+        return side == "l"
+    return bool((left.mean() > right.mean()) == (side == "l"))
+
+
+def side_of(rig: Rig) -> NDArray[np.int_]:
+    """Return the side of each vertex, shape (n,): 1 for left, -1 for right, 0 for the middle."""
+    plane = joint_mirror(rig)
+    offset = rig.mesh.vertices[:, plane.axis] - plane.position
+    side = np.sign(offset) * (np.abs(offset) > VERTEX_TOLERANCE * mesh_diagonal(rig))
+    return side.astype(int) * (1 if side_is_positive(rig, plane, "l") else -1)

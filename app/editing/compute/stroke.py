@@ -177,11 +177,20 @@ class Stroke:
         near = self._distance.min(axis=0) < self._brush.radius
         return np.flatnonzero(near[self._surface.reach.index] & self._within)
 
+    def covered(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Return the vertices that were touched so far, and how strongly, shapes (v,)."""
+        vertices = self.touched()
+        return vertices, self._cover().max(axis=0)[self._surface.reach.index[vertices]]
+
+    def _cover(self) -> NDArray[np.float64]:
+        """Return how strongly each side of the stroke covers welded vertices."""
+        inside = np.maximum(1 - np.square(self._distance / self._brush.radius), 0)
+        return np.asarray(self._brush.strength * np.square(inside))
+
     def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
         brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
-        inside = np.maximum(1 - np.square(self._distance / brush.radius), 0)
-        covered = brush.strength * np.square(inside)
+        covered = self._cover()
         if not len(vertices):
             return vertices, self._weights[vertices]
         selected, cover = replace(self._all, vertices=vertices), covered[:, index[vertices]]

@@ -1,32 +1,29 @@
 """The stack of layers: what lies below it, a list, and the chosen layer."""
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from cutcell.editing import Attached, Computed, Layer, Locked, Mirrored, Painted, Smoothed
 from cutcell.editing.layers.contents import Content
+from cutcell.editing.layers.layer import Mode
 from cutcell.runtime.display import count, listed
 
 from ...document.selection import selected
 from ...document.session import Session
 from ...document.state import State
+from ...looks.mask import chosen_layer as _layer
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from ..compute import stack
 from . import commands
+from .masks import MASKS
 
 ABOUT = (
     "Layers change the weights below them. Strokes go into the chosen painted layer, or a new one."
 )
 NEW = "A new layer covers the selection, or else everything."
 LATE = ("binding",)
-
-
-def _layer(state: State) -> Layer | None:
-    """Return the chosen layer."""
-    layers = state.edits.layers
-    return layers[state.layer] if state.layer is not None and state.layer < len(layers) else None
 
 
 def _rows(state: State) -> dict[str, Any]:
@@ -130,6 +127,7 @@ NEW_LAYERS = {
     "With the body it touches": _adds(lambda session: Attached()),
     "Selected bone locked": _adds(_lock),
 }
+MODES = {mode.capitalize(): mode for mode in get_args(Mode)}
 LAYERS = ui.folded(
     "Layers",
     ui.column(
@@ -148,11 +146,17 @@ LAYERS = ui.folded(
             "", label="Opacity", act=_sets("opacity"), value=_reads("opacity", 1.0),
             start=0, end=1, step=0.05, format="0%",
         ),
+        ui.pick(
+            "Mode", lambda state: list(MODES),
+            lambda state: [*MODES.values()].index(_reads("mode", "replace")(state)),
+            lambda session, place: _sets("mode")(session, [*MODES.values()][place]),
+        ),
         ui.row(
             ui.button("Up", margin=ui.BESIDE, **_moves(1)),
             ui.button("Down", margin=ui.BESIDE, **_moves(-1)),
             ui.button("Delete", _delete),
         ),
+        ui.menu("Mask", "texture", MASKS),
         ui.button("Merge down", commands.merge_down, disabled=lambda state: not state.layer),
         visible=lambda state: _layer(state) is not None,
     ),

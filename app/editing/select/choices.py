@@ -14,6 +14,7 @@ class Choices(param.Parameterized):
     lasso_through = param.Boolean(False, label="Lasso hidden vertices")
     isolated = param.Boolean(False, label="Isolate")
     condition = param.String("", doc="The condition that was applied last.")
+    saved = param.String("", doc="The saved selection that was chosen or saved last.")
     amount = param.Number(0.1, bounds=(0, 1), step=0.01, label="Amount")
     move_from = param.String("", doc="The joint whose weight is moved; empty for all.")
     passes = param.Integer(5, bounds=(1, 50), label="Smoothing passes")
@@ -21,6 +22,7 @@ class Choices(param.Parameterized):
     bone_table = param.String("", doc="The table of bones that was applied last.")
     with_children = param.Boolean(False, label="With all bones below")
     copied: Any = param.Parameter(None, doc="Points (s, 3) and rows (s, j) that were copied.")
+    copied_mask: Any = param.Parameter(None, doc="A mesh, and strengths (n,) that were copied.")
     table = param.Boolean(False, label="Table")
     table_order: Any = param.Parameter(
         (1, True), doc="Column of the table that sorts it, and whether the largest come first."

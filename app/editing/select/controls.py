@@ -13,6 +13,7 @@ from ...widgets import controls as ui
 from ...widgets.weights_table import Histogram, WeightsTable
 from ..layers.buttons import blend_button, file_button, recompute_button
 from .operations import OPERATIONS, move, source_joint
+from .saved import SAVED
 from .selections import SELECTIONS, select_bars, select_where
 from .table import act, table_parts, table_text
 
@@ -107,6 +108,7 @@ SELECTION = ui.folded(
         placeholder=WHERE,
         repeats=True,
     ),
+    SAVED,
     CHANGES,
     ui.switch("table"),
     ui.caption(table_text, visible=lambda s: s.table, late=LATE),

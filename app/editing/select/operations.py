@@ -14,7 +14,6 @@ from cutcell.editing.selections import Neighbours
 from cutcell.editing.symmetry import Mirror, find_mirror
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
-from cutcell.rig.names import plain
 from cutcell_viewers.short_names import short_names
 
 from ...document.selection import selected, selected_vertices
@@ -22,6 +21,7 @@ from ...document.session import Session
 from ...document.state import State
 from ...looks.selection import neighbours_of
 from ..compute import operations as ops
+from ..compute.mirror import side_is_positive
 from ..compute.selected import Selected
 from ..compute.stack import locked_names, locked_weights
 from ..correct.commands import check_alone
@@ -176,16 +176,6 @@ def swapped(chosen: Selected, plane: Mirror) -> Any:
     """Return vertices, and their rows with left and right joints exchanged."""
     swap = plane.swap
     return chosen.vertices, ops.in_chunks(chosen, lambda part: part.finished(part.rows[:, swap]))
-
-
-def side_is_positive(rig: Rig, plane: Mirror, side: str) -> bool:
-    """Return whether a side, "l" or "r", is that of larger coordinates, by the names of joints."""
-    names = np.array([plain(name)[1] for name in rig.skeleton.names])
-    offset = rig.skeleton.joints[:, plane.axis] - plane.position
-    left, right = (offset[names == one] for one in "lr")
-    if not len(left) or not len(right):  # characters look along z, and x points to their left
-        return side == "l"
-    return bool((left.mean() > right.mean()) == (side == "l"))
 
 
 def copy(session: Session) -> None:

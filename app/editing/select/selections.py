@@ -1,6 +1,7 @@
 """Select vertices of the open character."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -221,5 +222,8 @@ SELECTIONS: dict[str, Callable[[Session], None]] = {
     "Connected part": select_component,
     "Mesh of the file": select_mesh,
     "Finding chosen in Check": select_finding,
+    "Left side": partial(select_where, condition="side = left"),
+    "Right side": partial(select_where, condition="side = right"),
+    "Middle": partial(select_where, condition="side = middle"),
 }
 """By their names in the menu."""

@@ -22,7 +22,16 @@ class Choices(choices_of(WEIGHTS, max_influences=MOST)):  # type: ignore[misc]
 
     weights_shown: param.Selector[str] = param.Selector(
         default="mix",
-        objects=["bone", "dominant", "mix", "count", "difference", "bone_difference", "symmetry"],
+        objects=[
+            "bone",
+            "dominant",
+            "mix",
+            "count",
+            "difference",
+            "bone_difference",
+            "symmetry",
+            "mask",
+        ],
     )
     weights_of: param.Selector[str] = param.Selector(
         default="ours",

@@ -22,6 +22,7 @@ SHOWN = {
     "Selected bone": "bone",
     "Influences per vertex": "count",
     "Symmetry": "symmetry",
+    "Mask of the layer": "mask",
 }
 DIFFERENCE = {
     "Difference from the file's": "difference",

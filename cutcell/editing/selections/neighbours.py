@@ -56,6 +56,13 @@ class Neighbours:
         """Remove chosen vertices, shape (n,), that have a neighbour which is not chosen."""
         return ~self.grown(~self._at_nodes(chosen)[self.welded])
 
+    def dilated(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the largest value, (n,), 0 or more, of each vertex, its copies and neighbours."""
+        most = np.zeros(self.links.shape[0])
+        np.maximum.at(most, self.welded, values)
+        around = self.links.multiply(most[None]).max(axis=1).toarray().ravel()
+        return np.asarray(np.maximum(most, around)[self.welded])
+
     def smooth(
         self, weights: NDArray[np.float64], steps: int, which: NDArray[np.intp] | None = None
     ) -> NDArray[np.float64]:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.errors import ParameterError, WeightsError
+from cutcell.errors import ParameterError, SkeletonError, WeightsError
 from cutcell_app.editing.compute.condition import vertices_where
+from tests.app.small import small_rig
 from tests.bars import bar
 
 NAMES = ("hand.L", "hand", "Left Arm and more", 'the "big" toe', "hand.L.001")
@@ -45,6 +46,9 @@ def test_conditions_are_what_numpy_says(named):
         "distance ≤ 0.1": binding.distances.least * size <= 0.1,
         "0.1 < weight of hand <= 0.9": (weights[:, 1] > 0.1) & (weights[:, 1] <= 0.9),
         "part = 1": np.ones(len(weights), bool),
+        "x < 0 and Z >= .1": (rig.mesh.vertices[:, 0] < 0) & (rig.mesh.vertices[:, 2] >= 0.1),
+        "weight of hand* > 0.5": weights[:, [0, 1, 4]].sum(axis=1) > 0.5,
+        "weight of '*.L' > 0.1 and distance < 0.2": (weights[:, 0] > 0.1) & (far < 0.2),
         "part ≠ 1 or 2 > 1": np.ones(len(weights), bool),
         "weight of hand > weight of hand.L": weights[:, 1] > weights[:, 0],
         "not weight of hand > .5 and not (influences > 1 or part = 2)":
@@ -70,6 +74,7 @@ def test_conditions_are_what_numpy_says(named):
         ("weight of 'hand.L.001", "no joint"),
         ("weight of hand.L", "needs <, <=, .* at its end"),
         ("weight of hand.L 0.1", "needs <.* at character 18"),
+        ("weight of *.R > 0", 'no joint "\\*.R"'),
         ("part = 1)", "needs `and`, `or` or the end at character 9, '\\)'"),
         ("(part = 1", "needs a closing parenthesis at its end"),
         ("part = 1 1", "at character 10, '1'"),
@@ -108,3 +113,13 @@ def test_no_text_does_more_than_raise_an_error(named):
         except (ParameterError, WeightsError):
             continue
         assert result.shape == (len(binding.weights),)
+
+
+def test_a_side_is_that_of_names_and_needs_a_mirrored_skeleton(named):
+    rig = small_rig()
+    x = rig.mesh.vertices[:, 0]
+    for side, expected in (("left", x > 1e-2), ("right", x < -1e-2), ("middle", abs(x) < 1e-2)):
+        result = vertices_where(f"side = {side}", rig, rig.weights)
+        np.testing.assert_array_equal(result, expected, side)
+    with pytest.raises(SkeletonError, match="not mirrored"):
+        vertices_where("side = left", named[0], named[1].weights)

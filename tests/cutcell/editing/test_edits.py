@@ -37,7 +37,7 @@ LAYERS = (
     Layer(Painted(MANY, ["head", "neck", "tail"], ROWS)),
     Layer(Painted([2, 9], ["head", "tail"], [[0.25, 0.75], [1, 0]])),
     Layer(Smoothed(3, through=True)),
-    Layer(Mirrored("left")),
+    Layer(Mirrored("left"), mode="scale"),
     Layer(Remapped({"head": "neck", "neck": "head"})),
     Layer(Locked(["neck"])),
 )
@@ -47,6 +47,7 @@ ALL = Edits(
     base="file",
     method={"falloff": "paper", "alpha": 0.3},
     layers=LAYERS,
+    selections={"left hand": Mask(vertices=MANY), "cap": Mask(part=3)},
 )
 
 
@@ -60,6 +61,8 @@ def test_json_and_back_is_the_same(tmp_path):
     assert Edits.load(tmp_path / "c.json") == ALL
     assert not Edits.from_json(Edits().to_json())
     assert Edits(base="file")
+    assert Edits(selections={"all": Mask()})
+    assert Edits(selections={"one": Mask(part=1)}) != Edits(selections={"one": Mask(part=2)})
     assert LAYERS[3].content.weights == {"head": 0.75, "tail": 0.25}
 
 
@@ -69,6 +72,7 @@ def test_each_part_of_a_layer_counts_for_equality():
             replace(layer, opacity=0.5),
             replace(layer, name="other"),
             replace(layer, on=not layer.on),
+            replace(layer, mode="add"),
             replace(layer, mask=Mask(vertices=[0])),
         )
         assert all(other != layer for other in others)
@@ -95,6 +99,9 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"base": "mine"}', "base must be"),
         ('{"method": {"resolution": 1}}', "resolution must be"),
         ('{"method": {"resolutoin": 32}}', 'method has no .resolutoin.; did you mean "resolution"'),
+        ('{"selections": {"": {}}}', "selections go by names"),
+        ('{"selections": {"a": {"vertexes": 1}}}', 'the selection "a" has no .vertexes.'),
+        ('{"selections": {"a": {"vertices": [2, 1]}}}', 'the selection "a": .* must ascend'),
         ('{"layers": {}}', "layers must be a list"),
         ('{"layers": [{"kind": "glued"}]}', 'layer 1 must have a "kind": one of computed'),
         ('{"layers": [{"kind": "filled"}]}', "layer 1 needs weights"),
@@ -104,6 +111,7 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"layers": [{"kind": "remapped", "joints": {"a": 1}}]}', "must hold names of joints"),
         ('{"layers": [{"kind": "file", "weights": 1}]}', "layer 1 has no .weights."),
         ('{"layers": [{"kind": "file", "opacity": 2}]}', "layer 1: opacity must be"),
+        ('{"layers": [{"kind": "file", "mode": "burn"}]}', "layer 1: mode must be"),
         ('{"layers": [{"kind": "file", "on": 1}]}', "layer 1: on must be"),
         ('{"layers": [{"kind": "file", "mask": {"part": -1}}]}', "the vertex of a part must be"),
         ('{"layers": [{"kind": "file", "mask": {"vertices": [2, 1]}}]}', "must ascend"),

@@ -59,3 +59,13 @@ def test_shrinking_undoes_growing_no_farther_than_it_was(split):
 def test_components_are_numbered_from_the_largest(split):
     component = split.welded.component[split.welded.index]
     assert np.array_equal(component, split.vertices[:, 1] > 2)
+
+
+def test_dilated_strengths_are_the_largest_of_places_around(split):
+    neighbours, (place, next_to) = Neighbours.of(split), by_sets(split)
+    values = np.random.default_rng(2).random(len(place))
+    at = {}
+    for one, value in zip(place, values, strict=True):
+        at[one] = max(at.get(one, 0.0), value)
+    expected = [max(at[other] for other in next_to[one]) for one in place]
+    np.testing.assert_array_equal(neighbours.dilated(values), expected)
