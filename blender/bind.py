@@ -31,7 +31,9 @@ class OBJECT_OT_cutcell_parent(WorkerOperator, bpy.types.Operator):
     bl_idname = "object.cutcell_parent"
     bl_label = "With Cut-Cell Weights"
 
-    method: EnumProperty(name="Method", items=METHODS, default="animation")
+    method: EnumProperty(
+        name="Method", description="What the weights are for", items=METHODS, default="animation"
+    )
     resolution: IntProperty(
         name="Resolution",
         description="Lattice cells along the longest side. More cells separate close parts better, "
@@ -43,7 +45,10 @@ class OBJECT_OT_cutcell_parent(WorkerOperator, bpy.types.Operator):
         description="Maximum number of bones per vertex. 0: no limit",
         default=4, min=NO_LIMIT, max=1024, soft_max=16,
     )  # fmt: skip
-    falloff: EnumProperty(name="Falloff", items=FALLOFFS, default="method")
+    falloff: EnumProperty(
+        name="Falloff", description="Decrease of weight with distance", items=FALLOFFS,
+        default="method",
+    )  # fmt: skip
 
     @classmethod
     def poll(cls, context):

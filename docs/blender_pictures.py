@@ -4,7 +4,6 @@
 """
 
 import colorsys
-import math
 import os
 from pathlib import Path
 
@@ -15,7 +14,6 @@ ROOT = Path(__file__).resolve().parent.parent
 PICTURE = ROOT / "docs" / "pictures" / "blender-bound.png"
 GOLDEN = 0.618034
 """Hues of bones that follow each other differ by this part of the circle."""
-TURNS = (("upper_arm.L", "Z", -50), ("upper_arm.R", "Z", 35), ("thigh.L", "X", -35))
 
 
 def install():
@@ -35,9 +33,8 @@ def bound_character():
     mesh.select_set(True)
     armature.select_set(True)
     bpy.context.view_layer.objects.active = armature
-    armature.animation_data_clear()
     bpy.ops.object.cutcell_parent()
-    return mesh, armature
+    return mesh
 
 
 def colour(mesh):
@@ -49,7 +46,6 @@ def colour(mesh):
         rgb = [sum(g.weight * palette[g.group][k] for g in vertex.groups) for k in range(3)]
         layer.data[vertex.index].color = (*rgb, 1)
     material = bpy.data.materials.new("bones")
-    material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     attribute = nodes.new("ShaderNodeVertexColor")
     attribute.layer_name = "bones"
@@ -58,13 +54,8 @@ def colour(mesh):
     mesh.data.materials.append(material)
 
 
-def render(mesh, armature):
-    """Render the posed character."""
-    for name, axis, degrees in TURNS:
-        bone = armature.pose.bones.get(name)
-        if bone is not None:
-            turn = mathutils.Matrix.Rotation(math.radians(degrees), 4, axis)
-            bone.matrix_basis = turn @ bone.matrix_basis
+def render(mesh):
+    """Render the character in the pose of the file's first frame."""
     scene = bpy.context.scene
     for obj in bpy.data.objects:
         obj.hide_render = obj.type == "MESH" and obj != mesh
@@ -79,14 +70,14 @@ def render(mesh, armature):
     corners = [mesh.matrix_world @ mathutils.Vector(c) for c in mesh.bound_box]
     centre = sum(corners, mathutils.Vector()) / 8
     size = max(corner[2] for corner in corners) - min(corner[2] for corner in corners)
-    camera.data.type, camera.data.ortho_scale = "ORTHO", 1.25 * size
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 1.15 * size
     direction = mathutils.Vector((0.5, -1, 0.2)).normalized()
     camera.location = centre + 4 * size * direction
     camera.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
     scene.camera, scene.render.engine = camera, "CYCLES"
     scene.cycles.samples, scene.cycles.device = 24, "CPU"
     scene.view_settings.view_transform = "Standard"
-    scene.render.resolution_x, scene.render.resolution_y = 640, 640
+    scene.render.resolution_x, scene.render.resolution_y = 480, 640
     scene.render.film_transparent = False
     scene.render.filepath = str(PICTURE)
     bpy.ops.render.render(write_still=True)
@@ -109,7 +100,6 @@ def print_table():
 if __name__ == "__main__":
     install()
     print_table()
-    character, rig = bound_character()
-    print([bone.name for bone in rig.pose.bones][:60])
+    character = bound_character()
     colour(character)
-    render(character, rig)
+    render(character)

@@ -23,6 +23,8 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "blender"
+TESTED = BUILD / "tested"
+"""Repository of this platform alone, which tests and pictures use."""
 REQUIREMENTS = ("lazy-loader", "numba", "platformdirs", "psutil", "scipy")
 LEFT_OUT = ("numpy", "packaging")
 """Blender's own, and what lazy-loader imports only for functions that cutcell does not call."""
@@ -125,9 +127,8 @@ def stage(target: Target, platforms: list[str], folder: Path) -> None:
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
 
 
-def build(only: list[str]) -> list[Path]:
-    """Build the archives and the repository; return the archives."""
-    repository = BUILD / "repository"
+def build(only: list[str], repository: Path) -> None:
+    """Build the archives and the repository."""
     shutil.rmtree(repository, ignore_errors=True)
     repository.mkdir(parents=True)
     for target in TARGETS:
@@ -150,7 +151,6 @@ def build(only: list[str]) -> list[Path]:
     for archive in archives:
         print(f"{archive.name:<44} {archive.stat().st_size / 1e6:>6.1f}")
     print(f"The repository is {repository}: index.json, index.html and the archives")
-    return archives
 
 
 def own_platform() -> str:
@@ -163,7 +163,7 @@ def own_platform() -> str:
 def run_in_bpy(target: Target, *command: str | Path) -> int:
     """Run a command of Blender's Python, with a temporary home and the archive to install."""
     tag = f"cp{target.python.replace('.', '')}.zip"
-    (archive,) = (BUILD / "repository").glob(f"*{own_platform().replace('-', '_')}-{tag}")
+    (archive,) = TESTED.glob(f"*{own_platform().replace('-', '_')}-{tag}")
     print(f"\nbpy {target.bpy}, Python {target.python}", flush=True)
     with tempfile.TemporaryDirectory() as home:
         environment = {
@@ -179,7 +179,7 @@ def run_in_bpy(target: Target, *command: str | Path) -> int:
 
 def test(versions: list[str], arguments: list[str]) -> int:
     """Install the extension into a temporary home, for each bpy, and test it there."""
-    build([own_platform()])
+    build([own_platform()], TESTED)
     tests = ROOT / "blender" / "tests"
     pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-rs", "-c", os.devnull]
     pytest += ["--rootdir", str(tests), str(tests), *arguments]
@@ -195,9 +195,9 @@ def main() -> None:
     parser.add_argument("--bpy", action="append", default=[], help="a version of bpy to test with")
     options, arguments = parser.parse_known_args()
     if options.action == "build":
-        build(options.only)
+        build(options.only, BUILD / "repository")
     elif options.action == "pictures":
-        build([own_platform()])
+        build([own_platform()], TESTED)
         sys.exit(run_in_bpy(TARGETS[-1], ROOT / "docs" / "blender_pictures.py"))
     else:
         sys.exit(test(options.bpy, arguments))

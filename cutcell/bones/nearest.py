@@ -32,10 +32,16 @@ class NodeGrid:
         Which of them may be found.
     resolution : int
         R, of the lattice that the nodes are of.
+    label : array, shape (N,), integers, optional
+        What each node belongs to, see `nearest`.
     """
 
     def __init__(
-        self, nodes: NDArray[np.float64], chosen: NDArray[np.bool_], resolution: int
+        self,
+        nodes: NDArray[np.float64],
+        chosen: NDArray[np.bool_],
+        resolution: int,
+        label: NDArray[np.integer] | None = None,
     ) -> None:
         number, self._resolution = np.flatnonzero(chosen), resolution
         across = self._across = int(np.clip(np.cbrt(len(number) / PER_CELL), 1, MAX_ACROSS))
@@ -47,6 +53,8 @@ class NodeGrid:
         order = np.argsort(cell, kind="stable")
         self._start = np.append(0, np.cumsum(np.bincount(cell, minlength=across**3)))
         self._points, self._number = points[order], number[order]
+        label = np.zeros(len(nodes), np.int32) if label is None else label
+        self._label = label[self._number].astype(np.int32)
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> NodeGrid:
@@ -55,14 +63,22 @@ class NodeGrid:
             raise MeshError("every triangle of the mesh has collapsed into a point")
         return cls(graph.nodes, graph.connected, graph.lattice.resolution)
 
-    def nearest(self, points: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def nearest(
+        self, points: NDArray[np.float64], apart: NDArray[np.integer] | None = None
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Find the nearest nodes of each point: the eight around the middle of a cell are equal.
 
-        Shapes: points (p, 3); returns point, node (f,).
+        Nodes with the label of a point in `apart` are passed over; there must be others.
+
+        Shapes: points (p, 3), apart (p,); returns point, node (f,).
         """
+        apart = np.full(len(points), -1) if apart is None else apart
+        labels = apart.astype(np.int32), self._label
         inside, pairs = np.clip(points, 0, 1), np.empty((8 * len(points), 2), np.int64)
         while True:
-            count = _nearest(points, inside, self._across, self._start, self._points, pairs)
+            count = _nearest(
+                points, inside, self._across, self._start, self._points, *labels, pairs
+            )
             if count <= len(pairs):
                 return pairs[:count, 0], self._number[pairs[:count, 1]]
             pairs = np.empty((count, 2), np.int64)
@@ -87,7 +103,7 @@ class NodeGrid:
 
 
 @no_refcount
-def _nearest(points, inside, across, start, nodes, pairs):
+def _nearest(points, inside, across, start, nodes, apart, label, pairs):
     """List each point with its nearest nodes as far as there is room; return how many they are.
 
     `inside` are the nearest points of the unit cube.
@@ -96,17 +112,20 @@ def _nearest(points, inside, across, start, nodes, pairs):
     for p in range(len(points)):
         least, ring = np.inf, 0
         while least == np.inf:  # of the smallest cube of cells around it that holds any node
-            least = _least_in(_box(inside, p, ring / across, across), points, p, start, nodes)
+            least = _least_in(
+                _box(inside, p, ring / across, across), points, p, start, nodes, apart[p], label
+            )
             ring += 1
         reach = np.sqrt(max(least - _squared(points, p, inside, p), 0.0)) + TIE
         box = _box(inside, p, reach, across)
-        limit = (np.sqrt(_least_in(box, points, p, start, nodes)) + TIE) ** 2
+        limit = _least_in(box, points, p, start, nodes, apart[p], label)
+        limit = (np.sqrt(limit) + TIE) ** 2
         (low_x, low_y, low_z), (high_x, high_y, high_z), _ = box
         for x in range(low_x, high_x + 1):
             for y in range(low_y, high_y + 1):
                 column = (x * across + y) * across
                 for n in range(start[column + low_z], start[column + high_z + 1]):
-                    if _squared(points, p, nodes, n) <= limit:
+                    if label[n] != apart[p] and _squared(points, p, nodes, n) <= limit:
                         if count < len(pairs):
                             pairs[count, 0], pairs[count, 1] = p, n
                         count += 1
@@ -124,15 +143,16 @@ def _box(inside, p, reach, across):
 
 
 @no_refcount
-def _least_in(box, points, p, start, nodes):
-    """Return the least squared distance of a point to the nodes of a box of cells."""
+def _least_in(box, points, p, start, nodes, apart, label):
+    """Return the least squared distance of a point to the nodes of a box with other labels."""
     (low_x, low_y, low_z), (high_x, high_y, high_z), across = box
     least = np.inf
     for x in range(low_x, high_x + 1):
         for y in range(low_y, high_y + 1):
             column = (x * across + y) * across
             for n in range(start[column + low_z], start[column + high_z + 1]):
-                least = min(least, _squared(points, p, nodes, n))
+                if label[n] != apart:
+                    least = min(least, _squared(points, p, nodes, n))
     return least
 
 

@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from . import bind, clean, diagnose, explain, graph, joints
+from . import bind, clean, diagnose, explain, graph, joints, transfer, weights
 from .console import exit_by_output, print_line
 
 app = typer.Typer(
@@ -53,7 +53,7 @@ def cutcell(
     """
 
 
-for module in (bind, clean, graph, diagnose, explain, joints):
+for module in (bind, clean, transfer, weights, graph, diagnose, explain, joints):
     command = module.__name__.rpartition(".")[2]
     app.command(epilog=module.EPILOG)(getattr(module, command))
 

@@ -59,13 +59,18 @@ def attach(
 ) -> csr_array:
     """Make some components, shape (components,), rigid to the others where they touch them.
 
+    With their `own` weights, which then count besides, they also touch each other.
+
     `weights`, `own` and what is returned have the shape (k, j).
     """
     points, component, areas = graph.mesh.points, graph.mesh.component, graph.mesh.areas
-    on_body = ~is_accessory[component]
-    attached = np.flatnonzero(~on_body)
-    distance, mean = nearest_on_body(graph, on_body, points[attached])
+    attached = np.flatnonzero(is_accessory[component])
     label, area = component[attached], areas[attached] + 1e-12
+    if own is None:
+        distance, mean = nearest_on_body(graph, ~is_accessory[component], points[attached])
+    else:
+        every = np.ones(len(component), np.bool_)
+        distance, mean = nearest_on_body(graph, every, points[attached], label)
     least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
     touches = distance <= least[label] + CONTACT_CELLS / graph.lattice.resolution + TIE
@@ -94,18 +99,24 @@ def _averages(
 
 
 def nearest_on_body(
-    graph: CutCellGraph, on_body: NDArray[np.bool_], points: NDArray[np.float64]
+    graph: CutCellGraph,
+    on_body: NDArray[np.bool_],
+    points: NDArray[np.float64],
+    apart: NDArray[np.integer] | None = None,
 ) -> tuple[NDArray[np.float64], csr_array]:
     """Measure from points to the body's surface: its vertices, and where rays hit it.
+
+    A component of the body is no part of it for points that are in it, by `apart` (p,).
 
     Returns the distances (p,), and the matrix (p, k) that makes weights of welded vertices the
     weights at the points: the means over the corners of the faces that their nearest nodes are on.
     """
     first = graph.first_surface
-    chosen = np.zeros(len(graph.nodes), np.bool_)
-    chosen[: len(on_body)] = on_body
-    chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
-    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points)
+    vertex = np.append(np.arange(len(on_body)), graph.faces[graph.triangle[first:], 0])
+    on_surface = np.append(np.arange(len(on_body)), np.arange(first, len(graph.nodes)))
+    chosen, label = np.zeros(len(graph.nodes), np.bool_), np.zeros(len(graph.nodes), np.int32)
+    chosen[on_surface], label[on_surface] = on_body[vertex], graph.mesh.component[vertex]
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution, label).nearest(points, apart)
     distance = np.linalg.norm(graph.nodes[node] - points[of], axis=1)
     corners = np.where(node[:, None] < first, node[:, None], graph.faces[graph.triangle[node]])
     part = np.repeat(1 / (3 * np.bincount(of)[of]), 3)

@@ -104,6 +104,19 @@ def test_what_an_accessory_is_near_counts_beside_what_it_touches():
     np.testing.assert_array_equal(both, both[[0] * 8])
 
 
+def test_a_rivet_on_a_plate_follows_the_plate():
+    vertices, faces = grid_box(20)
+    plate = vertices * [0.12, 0.5, 0.1] + [0.47, 0.05, 0.21]
+    rivet, few = button([0, 0, 0])
+    rivet = rivet * 0.25 + [0.48, 0.1, 0.245]
+    vertices, faces = joined(joined((vertices, faces), (plate, faces)), (rivet, few))
+    graph = build_graph(TriangleMesh(vertices, faces), 32, connectivity="any")
+    of_plate = graph.mesh.component == 1
+    weights = csr_array(np.where(of_plate[:, None], [0.0, 1.0], [1.0, 0.0]))
+    attached = attach(graph, np.array([False, True, True]), weights, weights).toarray()
+    assert (attached[graph.mesh.component == 2, 1] > 0.5).all()
+
+
 def sheet():
     """Make an open sheet over the bar of `grid_box`."""
     vertices, faces = grid_box(16, 8, 1, size=(0.8, 0.4, 0.26))

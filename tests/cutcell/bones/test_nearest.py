@@ -26,6 +26,16 @@ def test_nearest_are_those_of_all(resolution, count):
     assert set(zip(point, node, strict=True)) == set(zip(*expected, strict=True))
 
 
+def test_nodes_with_a_points_label_are_passed_over():
+    random = np.random.default_rng(0)
+    nodes, points = random.random((300, 3)), random.random((50, 3))
+    label, own = random.integers(0, 3, 300), random.integers(0, 3, 50)
+    away = np.where(label == own[:, None], np.inf, cdist(points, nodes))
+    point, node = NodeGrid(nodes, np.ones(300, bool), 16, label).nearest(points, own)
+    np.testing.assert_array_equal(point, np.arange(50))
+    np.testing.assert_array_equal(node, away.argmin(axis=1))
+
+
 def test_a_crowd_at_one_place_is_found_whole():
     nodes = np.full((100, 3), 0.25)
     grid = NodeGrid(nodes, np.ones(100, bool), 64)

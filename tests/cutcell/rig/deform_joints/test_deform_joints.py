@@ -283,7 +283,7 @@ def test_a_joint_that_was_ruled_out_is_doubted_where_the_skin_has_no_other():
     assert reports.doubtful.tolist() == [False, False, True, False]
 
 
-def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
+def test_mirror_axes_and_the_order_of_joints_and_vertices_do_not_matter():
     names = ["Root", "hip", "thigh.L", "foot.L", "FootIK.L", "foot.L.001", "hat", "hat_end", "far"]
     joints = [[0.5, -0.4, 0.1], *CHAIN, [0.7, 0.12, 0.1], CHAIN[2], [0.2, 0.15, 0.1]]
     joints = np.array([*joints, [0.25, 0.15, 0.1], [0.5, 0.5, 0.1]])
@@ -295,11 +295,11 @@ def test_mirror_and_the_order_of_joints_and_vertices_do_not_matter():
         order, points = random.permutation(9), random.permutation(len(BAR.vertices))
         place = np.argsort(points)
         faces = random.permutation(place[BAR.faces][:, [0, 2, 1]])
-        mirror = np.array([-3.0, 3.0, 3.0])
-        mesh = TriangleMesh(BAR.vertices[points] * mirror, faces)
+        turn = np.diag([-3.0, 3.0, 3.0]) @ np.roll(np.eye(3), seed, axis=1)
+        mesh = TriangleMesh(BAR.vertices[points] @ turn, faces)
         above = np.where(parents >= 0, np.argsort(order)[parents], -1)[order]
         swapped = [names[j].replace(".L", ".R") for j in order]
-        reports = deform_joints(mesh, Skeleton(joints[order] * mirror, above, swapped))
+        reports = deform_joints(mesh, Skeleton(joints[order] @ turn, above, swapped))
         assert_array_equal(reports.deform, plain.deform[order])
         assert_array_equal(reports.doubtful, plain.doubtful[order])
 
