@@ -42,13 +42,13 @@ def _other_side(
     has_bone = np.isin(np.arange(len(partner)), bones.joint)
     crossed, sound = np.zeros((2, len(weights)))
     rows, across, own = [], np.zeros(len(partner)), np.zeros(len(partner))
-    for j in np.flatnonzero((partner >= 0) & has_bone & has_bone[partner]):
+    for j in np.flatnonzero((partner >= 0) & has_bone & has_bone[partner]).tolist():
         if partner[j] == j:
             continue
         at = np.flatnonzero((weights[:, j] > VISIBLE_WEIGHT) & subject.is_used)
         here, there = (bones_distance(bones, int(k), points[at]) for k in (j, partner[j]))
         far = there < here
-        rows.append((int(j), at, far))
+        rows.append((j, at, far))
         across[j], own[j] = weights[at[far], j].sum(), weights[at[~far], j].sum()
     is_wrong = np.zeros(len(partner), np.bool_)
     for j, at, far in rows:
@@ -131,13 +131,13 @@ def _better(subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int])
         text = " The mean distance from the bones falls from {:.1%} to {:.1%} of the size."
         some = vertices[:: -(-len(vertices) // MOST)]
         points, weights = subject.mesh.points[subject.welded[some]], subject.weights[some]
-        now, then, total = 0.0, 0.0, 0.0
+        sums = np.zeros(3)
         for joint, target in pairs.items():
             weight = weights[:, joint]
-            at, total = np.flatnonzero(weight), total + weight.sum()
+            at = np.flatnonzero(weight)
             here, there = (
                 bones_distance(subject.distances.bones, k, points[at]) for k in (joint, target)
             )
-            now, then = now + weight[at] @ here, then + weight[at] @ there
-        now, then = now / total, then / total
+            sums += weight[at] @ here, weight[at] @ there, weight[at].sum()
+        now, then = (sums[:2] / sums[2]).tolist()
     return text.format(now, then)

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 SIDES = {"l": "l", "left": "l", "左": "l", "r": "r", "right": "r", "右": "r"}
 PREFIX = r"(?<![A-Za-z])(IK|FK|DEF|ORG|MCH|CTRL|CTL)(?=[a-z])"
@@ -40,6 +44,20 @@ def plain(name: str) -> tuple[str, str]:
     tokens = [re.sub("^[左右]", "", token) for token in tokens if token not in SIDES]
     japanese = [SIDES[letter] for letter in re.findall("[左右]", name)]
     return " ".join(tokens), (sides + japanese + [""])[0]
+
+
+def same_names(names: Sequence[str], others: Sequence[str]) -> NDArray[np.intp]:
+    """Return for each name the equal one of others, else the only one alike; -1 for none.
+
+    Names are alike if they have the same words, numbers and side: `ns:Arm_L` and `arm.l`.
+    """
+    equal = {name: k for k, name in reversed(list(enumerate(others)))}
+    alike: dict[tuple[str, str], list[int]] = {}
+    for k, name in enumerate(others):
+        alike.setdefault(plain(name), []).append(k)
+    likely = [alike.get(plain(name), []) for name in names]
+    pairs = zip(names, likely, strict=True)
+    return np.array([equal.get(n, ks[0] if len(ks) == 1 else -1) for n, ks in pairs], np.intp)
 
 
 def _spaced(name: str) -> str:

@@ -149,7 +149,7 @@ def table(scores: dict[str, list[dict[str, tuple[float, float, float]]]]) -> Tab
     """Compare the versions over all characters."""
     columns = ["joints", "characters", "division", "L1 median", "L1 mean", "cm² geometric mean"]
     columns += ["cm² mean", f"over {LARGE}", "better : worse", "seconds of a binding, median"]
-    note = f"Makers left out. Better and worse: by more than {NOTABLE:.0%} of cm² than by distance."
+    note = f"Makers left out. Better and worse: by over {NOTABLE:.0%} of cm² than by distance."
     result = Table("A learned division", columns, note)
     for mode, characters_ in scores.items():
         before = np.array([one["by distance"][1] for one in characters_])

@@ -34,14 +34,17 @@ def branch_pairs(skeleton: Skeleton, one: int, other: int) -> dict[int, int]:
     while below:
         pair = below.pop()
         pairs[pair[0]] = pair[1]
-        children = [np.flatnonzero(skeleton.parents == joint) for joint in pair]
+        children = [np.flatnonzero(skeleton.parents == joint).tolist() for joint in pair]
         # Of names that are equally alike, the order in the file decides.
         unlike = np.array([
             [_unlike(skeleton, a, b) + 1e-3 * abs(i - k) for k, b in enumerate(children[1])]
             for i, a in enumerate(children[0])
         ]).reshape(len(children[0]), len(children[1]))  # fmt: skip
         rows, columns = linear_sum_assignment(unlike)
-        below += zip(children[0][rows].tolist(), children[1][columns].tolist(), strict=True)
+        below += (
+            (children[0][row], children[1][column])
+            for row, column in zip(rows, columns, strict=True)
+        )
     return pairs
 
 

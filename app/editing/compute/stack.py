@@ -36,15 +36,10 @@ def put_layer(edits: Edits, layer: Layer) -> tuple[Edits, int]:
     """
     layers = list(edits.layers)
     place = len(layers)
-    while place and isinstance(layers[place - 1].content, Locked) and is_opaque(layers[place - 1]):
+    while place and isinstance(layers[place - 1].content, Locked) and layers[place - 1].is_opaque:
         place -= 1
     layers.insert(place, layer)
     return replace(edits, layers=layers), place
-
-
-def is_opaque(layer: Layer) -> bool:
-    """Return whether a layer hides all that is below its content."""
-    return layer.opacity == 1 and layer.mask.strengths is None
 
 
 def replaced(edits: Edits, place: int, layer: Layer | None) -> Edits:
@@ -100,7 +95,7 @@ def painted(edits: Edits, painting: Painted, place: int | None, name: str) -> tu
     layers = edits.layers
     if place is not None and 0 <= place < len(layers):
         layer = layers[place]
-        is_whole = layer.on and layer.opacity == 1 and layer.mask.is_all
+        is_whole = layer.on and layer.is_opaque and layer.mask.is_all
         if isinstance(layer.content, Painted) and is_whole:
             merged = replace(layer, content=layer.content.merged(painting))
             return replaced(edits, place, merged), place

@@ -1,11 +1,12 @@
 """The stack of layers: what lies below it, a list, and the chosen layer."""
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from cutcell.editing import Attached, Computed, Layer, Locked, Mirrored, Painted, Smoothed
 from cutcell.editing.layers.contents import Content
+from cutcell.editing.layers.layer import Mode
 from cutcell.runtime.display import count, listed
 
 from ...document.selection import selected
@@ -126,6 +127,7 @@ NEW_LAYERS = {
     "With the body it touches": _adds(lambda session: Attached()),
     "Selected bone locked": _adds(_lock),
 }
+MODES = {mode.capitalize(): mode for mode in get_args(Mode)}
 LAYERS = ui.folded(
     "Layers",
     ui.column(
@@ -143,6 +145,11 @@ LAYERS = ui.folded(
         ui.slider(
             "", label="Opacity", act=_sets("opacity"), value=_reads("opacity", 1.0),
             start=0, end=1, step=0.05, format="0%",
+        ),
+        ui.pick(
+            "Mode", lambda state: list(MODES),
+            lambda state: [*MODES.values()].index(_reads("mode", "replace")(state)),
+            lambda session, place: _sets("mode")(session, [*MODES.values()][place]),
         ),
         ui.row(
             ui.button("Up", margin=ui.BESIDE, **_moves(1)),

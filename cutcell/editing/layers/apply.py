@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ...weights.prune import prune
-from .layer import Layer
+from .layer import Layer, Mode
 from .sources import RigSources, Which, vertices_of
 
 ROWS_TOGETHER = 1000
@@ -40,13 +40,14 @@ def apply_layers(
             result, is_own = result.copy(), True
         for part in _blocks(which, result) if layer.content.by_rows else [which]:
             some, rows = sources.rows(layer, result, part)
-            if some is None and np.all(strength == 1) and not isinstance(rows, csr_array):
+            is_whole = some is None and np.all(strength == 1) and layer.mode == "replace"
+            if is_whole and not isinstance(rows, csr_array):
                 result, is_own = rows, False
             elif some is None or len(some):
                 if not is_own:
                     result, is_own = result.copy(), True
                 some = np.arange(len(result)) if some is None else some
-                _put(result, some, rows, strength, sources)
+                _put(result, some, rows, strength, sources, layer.mode)
         after(layer, result)
     return result
 
@@ -74,19 +75,27 @@ def blended(
     strength: NDArray[np.float64],
     max_influences: int | None,
     priority: NDArray[np.intp],
+    mode: Mode = "replace",
 ) -> NDArray[np.float64]:
-    """Return rows between those below and those of a content.
+    """Return rows between those below and those that a content makes of them by its mode.
 
     Shapes: below, content (k, j), strength (k,), 0 to 1; priority (j,), the order of joints with
-    the same weight. Rows with strength 0 or 1 are those of one side, bit for bit; others have at
-    most `max_influences` weights and sum to one.
+    the same weight. Rows with strength 0, and in mode "replace" with 1, are those of one side, bit
+    for bit; others have at most `max_influences` weights and sum to one. Rows that would be left
+    empty stay as they are below.
     """
     share = strength[:, None]
-    rows = (1 - share) * below + share * content
-    between = (strength > 0) & (strength < 1) & rows.any(axis=1)
+    rows = {
+        "replace": lambda: (1 - share) * below + share * content,
+        "add": lambda: below + share * content,
+        "scale": lambda: below * (1 - share + share * content),
+    }[mode]()
+    is_whole = (strength == 1) & (mode == "replace")
+    between = (strength > 0) & ~is_whole & rows.any(axis=1)
     rows[between] = prune(csr_array(rows[between]), max_influences, 0.0, priority).toarray()
-    rows[strength == 0] = below[strength == 0]
-    rows[strength == 1] = content[strength == 1]
+    stays = (strength == 0) | ~(between | is_whole)
+    rows[stays] = below[stays]
+    rows[is_whole] = content[is_whole]
     return rows
 
 
@@ -96,9 +105,10 @@ def _put(
     rows: Any,
     strength: NDArray[np.float64],
     sources: RigSources,
+    mode: Mode,
 ) -> None:
     """Blend rows, shape (k, j), into weights in place."""
-    if np.all(strength == 1):
+    if np.all(strength == 1) and mode == "replace":
         if isinstance(rows, csr_array):
             weights[which] = 0
             weights[np.repeat(which, np.diff(rows.indptr)), rows.indices] = rows.data
@@ -111,7 +121,7 @@ def _put(
         done += len(part)
         some = some.toarray() if isinstance(some, csr_array) else some
         how, most = np.broadcast_to(strength, len(weights))[part], sources.method.max_influences
-        weights[part] = blended(weights[part], some, how, most, sources.priority)
+        weights[part] = blended(weights[part], some, how, most, sources.priority, mode)
 
 
 def _blocks(which: Which, weights: NDArray[np.float64]) -> Iterator[NDArray[np.intp]]:

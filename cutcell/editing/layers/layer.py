@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...checks import assign, check_flag, check_integer, check_kind, check_number
+from ...checks import assign, check_choice, check_flag, check_integer, check_kind, check_number
 from ...errors import ParameterError
 from ...rig.checks import frozen
 from .contents import (
@@ -99,6 +99,7 @@ class Mask(ByValue):
 
 
 EVERYWHERE = Mask()
+Mode = Literal["replace", "add", "scale"]
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,8 @@ class Layer:
     opacity : float
         0 to 1.
     on : bool
+    mode : {"replace", "add", "scale"}
+        The weights of the content replace those below, are added to them, or are factors of them.
     """
 
     content: Content
@@ -123,12 +126,14 @@ class Layer:
     name: str = ""
     opacity: float = 1.0
     on: bool = True
+    mode: Mode = "replace"
 
     def __post_init__(self) -> None:
         for name, kind in (("content", Content), ("mask", Mask), ("name", str)):
             check_kind(name, getattr(self, name), kind)
         assign(self, opacity=check_number("opacity", self.opacity, 0, 1))
         check_flag("on", self.on)
+        check_choice("mode", self.mode, get_args(Mode))
 
     @property
     def title(self) -> str:
@@ -141,9 +146,14 @@ class Layer:
         return self.on and self.opacity > 0
 
     @property
+    def is_opaque(self) -> bool:
+        """Whether it hides all that is below its content."""
+        return self.opacity == 1 and self.mask.strengths is None and self.mode == "replace"
+
+    @property
     def is_reach(self) -> bool:
         """Whether it is all weights computed with another reach of joints: a base by itself."""
-        content, whole = self.content, self.mask.is_all and self.opacity == 1
+        content, whole = self.content, self.mask.is_all and self.is_opaque
         return isinstance(content, Computed) and content.is_plain and whole
 
     def renamed(self, now: Rename) -> Layer | None:
@@ -157,6 +167,7 @@ class Layer:
         more = {"mask": self.mask.to_data(), "name": self.name}
         data |= {key: value for key, value in more.items() if value}
         data |= {} if self.opacity == 1 else {"opacity": self.opacity}
+        data |= {} if self.mode == "replace" else {"mode": self.mode}
         return data | ({} if self.on else {"on": False})
 
     @classmethod
@@ -166,7 +177,7 @@ class Layer:
             raise ParameterError(f'{where} must have a "kind": one of {", ".join(CONTENT_KINDS)}')
         kind = CONTENT_KINDS[value["kind"]]
         own = [one.name for one in fields(kind)]
-        data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on"])
+        data = with_keys(where, value, ["kind", *own, "mask", "name", "opacity", "on", "mode"])
         try:
             with naming(where):
                 mask = Mask.from_data("mask", data.pop("mask", {}))

@@ -159,7 +159,7 @@ class RigSources:
         sources = [joint_index(skeleton, name) for name in joints]
         targets = [joint_index(skeleton, name) for name in joints.values()]
         which = np.arange(len(below)) if which is None else which
-        which = which[(below[np.ix_(which, sources)] > 0).any(axis=1)]
+        which = which[(below[which][:, sources] > 0).any(axis=1)]
         rows = below[which]
         moved = rows[:, sources]
         rows[:, sources] = 0.0

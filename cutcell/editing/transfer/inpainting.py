@@ -34,8 +34,8 @@ def inpaint(
     rows = stiffness[unknown]
     energy = rows @ diags_array(1 / areas) @ stiffness
     joints = np.flatnonzero(weights[fixed].any(axis=0))
-    known = np.flatnonzero(fixed)
-    right = -(energy[:, known] @ weights[np.ix_(known, joints)])
+    fixed_rows = np.flatnonzero(fixed)
+    right = -(energy[:, fixed_rows] @ weights[np.ix_(fixed_rows, joints)])
     solved = splu(csc_array(energy[:, unknown])).solve(right)
     result = weights.copy()
     result[unknown] = 0.0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import WeightsError
 from ...geometry.vectors import TIE
-from ...graph import CutCellGraph, build_graph
+from ...graph import build_graph
 from ...rig import Rig, TriangleMesh
 from ...runtime.progress import Progress
 from .closest import Surface
@@ -52,7 +52,6 @@ def match(
     distance: float,
     angle: float,
     flipped: bool,
-    graph: CutCellGraph | None,
     progress: Progress,
 ) -> Matches:
     """Match the welded vertices of a target; see `transfer` for the parameters."""
@@ -65,8 +64,7 @@ def match(
     faces = mesh.faces[mesh.is_whole & weighted[mesh.faces].all(axis=1)]
     if not len(faces):
         raise WeightsError("no triangle of the source has weights at all corners; bind it first")
-    if graph is None:
-        graph = build_graph(source.mesh, RESOLUTION, progress=progress)
+    graph = build_graph(source.mesh, RESOLUTION, progress=progress)
     place = landmark_distances(graph, graph.vertex_node[mesh.first], weighted)
     surface = Surface(mesh, faces, max(radius, MIN_SAMPLED) / SAMPLES_PER_RADIUS)
     closest = surface.nearest(points)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...checks import check_kind
 from ...errors import SkeletonError
 from ...rig import Skeleton
-from ...rig.names import plain
+from ...rig.names import same_names
 from ..locks import joint_index
 
 
@@ -26,7 +26,10 @@ def joint_matrix(
     """
     if source is target:
         return np.eye(len(source.names))
-    partner = partners(source.names, target, exceptions or {}, source)
+    check_kind("names", {} if exceptions is None else exceptions, Mapping)
+    partner = same_names(source.names, target.names)
+    for name, other in (exceptions or {}).items():
+        partner[joint_index(source, name)] = joint_index(target, other) if other else -1
     while len(open_ends := np.flatnonzero((partner < 0) & (source.parents >= 0))):
         above = partner[source.parents[open_ends]]
         partner[open_ends] = above
@@ -41,21 +44,3 @@ def joint_matrix(
     matrix = np.zeros((len(source.names), len(target.names)))
     matrix[partner >= 0, partner[partner >= 0]] = 1.0
     return matrix
-
-
-def partners(
-    names: tuple[str, ...], target: Skeleton, exceptions: Mapping[str, str], source: Skeleton
-) -> NDArray[np.intp]:
-    """Return the target's joint of the same name for each one (j,), -1 for none."""
-    check_kind("names", exceptions, Mapping)
-    by_name = {name: joint for joint, name in reversed(list(enumerate(target.names)))}
-    by_key: dict[tuple[str, str], list[int]] = {}
-    for joint, name in enumerate(target.names):
-        by_key.setdefault(plain(name), []).append(joint)
-    partner = np.full(len(names), -1, np.intp)
-    for joint, name in enumerate(names):
-        alike = by_key.get(plain(name), [])
-        partner[joint] = by_name.get(name, alike[0] if len(alike) == 1 else -1)
-    for name, other in exceptions.items():
-        partner[joint_index(source, name)] = joint_index(target, other) if other else -1
-    return partner

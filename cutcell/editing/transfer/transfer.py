@@ -12,7 +12,6 @@ from scipy.sparse import csr_array
 
 from ...checks import check_flag, check_integer, check_number
 from ...errors import ParameterError, WeightsError
-from ...graph import CutCellGraph
 from ...rig import Rig, TriangleMesh
 from ...rig.checks import as_array
 from ...rig.inputs import MeshLike, as_mesh
@@ -81,7 +80,6 @@ class TransferOptions(TypedDict, total=False):
     mask: ArrayLike | None
     max_influences: int | None
     names: Mapping[str, str] | None
-    graph: CutCellGraph | None
     progress: Progress
 
 
@@ -106,7 +104,6 @@ def transfer(
     mask: ArrayLike | None = None,
     max_influences: int | None = 4,
     names: Mapping[str, str] | None = None,
-    graph: CutCellGraph | None = None,
     progress: Progress = silent,
 ) -> Transfer | list[Transfer]:
     """Transfer the weights of a character to a mesh that lies on it.
@@ -127,7 +124,8 @@ def transfer(
     distance : float
         Greatest distance of a match, as part of the diagonal of the source's bounding box.
     angle : float
-        Greatest angle between the normals of a match, in degrees, 0 to 180.
+        Greatest angle between the normals of a match, in degrees, 0 to 180. Normals do not count
+        within three tenths of the distance.
     flipped : bool
         Match opposite normals, too, such as those of the inside of layered cloth.
     joints : sequence of int or str, optional
@@ -145,8 +143,6 @@ def transfer(
         The target's joint by the source's, where the names differ; "" for none. Others are matched
         by equal names, then by names without name spaces and case. The weight of a joint without a
         partner goes to the nearest joint above it that has one.
-    graph : CutCellGraph, optional
-        Graph of the source's mesh, if it was built before.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph" and "weights".
 
@@ -189,7 +185,7 @@ def transfer(
         raise ParameterError("a mask is for one target; transfer to each of them by itself")
     rigs = [_with_skeleton(one, source) for one in targets]
     joined, bounds = _joined([rig.mesh for rig in rigs])
-    matches = match(source, joined, radius, degrees, flipped, graph, progress)
+    matches = match(source, joined, radius, degrees, flipped, progress)
     progress("weights", 0.0)
     rows = inpaint(joined.welded, matches.state == MATCHED, matches.weights)
     index = joined.welded.index

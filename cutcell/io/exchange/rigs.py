@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...errors import FileError, WeightsError
 from ...rig import Part, Rig
-from ...rig.names import plain
+from ...rig.names import plain, same_names
 from ...runtime.writing import check_place, write_all
 from ..files import naming
 from .files import WEIGHT_FILES, MeshWeights, read_weights
@@ -93,24 +92,24 @@ def with_saved_weights(rig: Rig, paths: Sequence[Path]) -> Rig:
     """
     shape = (len(rig.mesh.vertices), len(rig.skeleton.names))
     weights = np.zeros(shape) if rig.weights is None else rig.weights.copy()
-    taken: set[int] = set()
+    used: set[int] = set()
     for path in paths:
         with naming(path):
             for one in read_weights(path):
-                number, order = _part_of(rig, one, taken)
-                taken.add(number)
+                number, order = _part_of(rig, one, used)
+                used.add(number)
                 rows = np.zeros((len(one.weights), shape[1]))
                 np.add.at(rows.T, _joints_of(rig, one), one.weights.T)
                 weights[rig.parts[number].vertices] = rows[order]
-    if rig.weights is None and len(taken) < len(rig.parts):
-        rest = [part.name for k, part in enumerate(rig.parts) if k not in taken]
+    if rig.weights is None and len(used) < len(rig.parts):
+        rest = [part.name for k, part in enumerate(rig.parts) if k not in used]
         raise WeightsError(f"no weights for {', '.join(rest)}; give a file for each mesh")
     return rig.with_weights(weights)
 
 
-def _part_of(rig: Rig, one: MeshWeights, taken: set[int]) -> tuple[int, NDArray[np.intp]]:
+def _part_of(rig: Rig, one: MeshWeights, used: set[int]) -> tuple[int, NDArray[np.intp]]:
     """Return the mesh of a rig that weights are for, and the row for each of its vertices."""
-    left = [k for k in range(len(rig.parts)) if k not in taken]
+    left = [k for k in range(len(rig.parts)) if k not in used]
     named = [k for k in left if _same_mesh(rig.parts[k].name, one.mesh)] or left
     fits = [(*_order(rig, rig.parts[k], one), k) for k in named]
     if not fits or min(fits, key=lambda fit: fit[0])[0] > MAX_DISTANCE:
@@ -144,17 +143,10 @@ def _same_mesh(name: str, other: str) -> bool:
 
 
 def _joints_of(rig: Rig, one: MeshWeights) -> NDArray[np.intp]:
-    """Return the rig's joint for each of a file: of its name, or but for name space and case."""
-    by_name = {name: j for j, name in reversed(list(enumerate(rig.skeleton.names)))}
-    by_key: dict[Any, list[int]] = {}
-    for j, name in enumerate(rig.skeleton.names):
-        by_key.setdefault(plain(name), []).append(j)
-    joints = []
-    for k, name in enumerate(one.joints):
-        short = name.split("|")[-1]  # a path in Maya
-        alike = by_key.get(plain(short), [])
-        joint = by_name.get(name, by_name.get(short, alike[0] if len(alike) == 1 else -1))
-        if joint < 0 and one.weights[:, k].any():
-            raise WeightsError(f'"{one.mesh}" follows the joint "{short}", which the rig lacks')
-        joints.append(max(joint, 0))
-    return np.array(joints, np.intp)
+    """Return the rig's joint for each of a file, whose names may be paths in Maya."""
+    names = [name.split("|")[-1] for name in one.joints]
+    joints = same_names(names, rig.skeleton.names)
+    if (lost := (joints < 0) & one.weights.any(axis=0)).any():
+        name = names[int(lost.argmax())]
+        raise WeightsError(f'"{one.mesh}" follows the joint "{name}", which the rig lacks')
+    return np.maximum(joints, 0)

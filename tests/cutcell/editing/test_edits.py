@@ -37,7 +37,7 @@ LAYERS = (
     Layer(Painted(MANY, ["head", "neck", "tail"], ROWS)),
     Layer(Painted([2, 9], ["head", "tail"], [[0.25, 0.75], [1, 0]])),
     Layer(Smoothed(3, through=True)),
-    Layer(Mirrored("left")),
+    Layer(Mirrored("left"), mode="scale"),
     Layer(Remapped({"head": "neck", "neck": "head"})),
     Layer(Locked(["neck"])),
 )
@@ -72,6 +72,7 @@ def test_each_part_of_a_layer_counts_for_equality():
             replace(layer, opacity=0.5),
             replace(layer, name="other"),
             replace(layer, on=not layer.on),
+            replace(layer, mode="add"),
             replace(layer, mask=Mask(vertices=[0])),
         )
         assert all(other != layer for other in others)
@@ -110,6 +111,7 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"layers": [{"kind": "remapped", "joints": {"a": 1}}]}', "must hold names of joints"),
         ('{"layers": [{"kind": "file", "weights": 1}]}', "layer 1 has no .weights."),
         ('{"layers": [{"kind": "file", "opacity": 2}]}', "layer 1: opacity must be"),
+        ('{"layers": [{"kind": "file", "mode": "burn"}]}', "layer 1: mode must be"),
         ('{"layers": [{"kind": "file", "on": 1}]}', "layer 1: on must be"),
         ('{"layers": [{"kind": "file", "mask": {"part": -1}}]}', "the vertex of a part must be"),
         ('{"layers": [{"kind": "file", "mask": {"vertices": [2, 1]}}]}', "must ascend"),

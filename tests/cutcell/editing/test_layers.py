@@ -273,6 +273,7 @@ layers = st.builds(
     st.one_of(st.just(Mask()), vertices.map(lambda which: Mask(vertices=which))),
     opacity=opacities,
     on=st.booleans(),
+    mode=st.sampled_from(["replace", "add", "scale"]),
 )
 stacks = st.lists(layers, max_size=5)
 quick = settings(max_examples=60, deadline=None)
@@ -401,3 +402,18 @@ def test_a_swap_follows_the_names_of_its_joints():
     assert content.renamed({"head": "skull"}.get) is None
     now = content.renamed(lambda name: "skull" if name == "head" else name)
     assert now == Remapped({"skull": "tail", "tail": "skull"})
+
+
+def test_weights_are_added_and_scaled_and_no_row_is_left_empty():
+    sources = RigSources(RIG, cutcell.ANIMATION.with_options(max_influences=None), GRAPH)
+    head = np.eye(JOINTS)[HEAD]
+    for opacity in (0.25, 1.0):
+        layer = Layer(Filled({"head": 1}), opacity=opacity, mode="add")
+        found = apply_layers(START, [layer], sources)
+        np.testing.assert_allclose(found, (START + opacity * head) / (1 + opacity), atol=1e-12)
+    scaled = apply_layers(START, [Layer(Filled({"head": 1}), mode="scale")], sources)
+    follows = START[:, HEAD] > 0
+    assert follows.any()
+    assert not follows.all()
+    np.testing.assert_allclose(scaled[follows], np.tile(head, (follows.sum(), 1)), atol=1e-12)
+    np.testing.assert_array_equal(scaled[~follows], START[~follows])

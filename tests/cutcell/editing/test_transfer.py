@@ -8,12 +8,18 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, WeightsError
-from cutcell.editing.transfer import INPAINTED, MATCHED, REFUSED, UNCHANGED
+from cutcell.editing.transfer import INPAINTED, MATCHED, REFUSED, UNCHANGED, matching
 from cutcell.editing.transfer.closest import Surface, barycentric
 from cutcell.editing.transfer.inpainting import inpaint
 from tests.bars import bar, surface_of
 
 GAP = 0.01
+
+
+@pytest.fixture(autouse=True)
+def _coarse(monkeypatch):
+    """Build the graphs of these boxes quickly."""
+    monkeypatch.setattr(matching, "RESOLUTION", 16)
 
 
 def limbs(other):
@@ -52,7 +58,9 @@ def sheet(height=0.25, count=11, width=0.2):
 @pytest.fixture(scope="module")
 def body():
     rig = bar(20)
-    return rig.with_weights(cutcell.bind(rig, 16).weights)
+    knots = [0.05, 0.5, 0.95]
+    columns = [np.interp(rig.mesh.vertices[:, 0], knots, row) for row in np.eye(3)]
+    return rig.with_weights(np.stack(columns, axis=1))
 
 
 def shell(rig, factor=1.1):
