@@ -139,7 +139,10 @@ def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any],
             pair, who = pair[::-1], who[::-1]
         return bone_difference_colors(rig, *pair, state.joint, who)
     if colors == "mask":
-        return mask_colors(mask_strengths(state), chosen_layer(state).title)
+        layer, strengths = chosen_layer(state), mask_strengths(state)
+        assert layer is not None
+        assert strengths is not None
+        return mask_colors(strengths, layer.title)
     if colors == "symmetry":
         return symmetry_colors(state.asymmetry.values)
     if colors == "count":

@@ -39,7 +39,7 @@ FOLDED = {
     "& .title": HEADING,
     "& .MuiAccordionDetails-root": {"p": "0 !important"},
 }
-BUTTONS = {"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px"}}
+BUTTONS = {"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px", "px": "3px"}}
 
 
 def switch(name: str, **options: Any) -> Control:

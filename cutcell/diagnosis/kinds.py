@@ -139,8 +139,7 @@ FINDING_KINDS = {
         "scale them to sum to one",
     ),
     "other-side": Kind("Skin that follows the other side", "warning",
-        "{vertices:vertex/follow} joints of the other side, most of the skin at "
-        "{joints:joint} there.{better}",
+        "{vertices:vertex/follow} {joints:joint} of the other side.{better}",
         "Exchange left and right there.",
     ),
     "exchanged-joints": Kind("Exchanged joints", "warning",

@@ -339,6 +339,7 @@ def test_exchanged_joints_are_mended_by_a_layer_over_the_files_weights(session, 
     labels(session)["Exchange these weights"].clicks += 1
     settled(session, loop)
     np.testing.assert_array_equal(state.weights, sound.weights)
+    assert state.layer == 0
     assert "exchanged-joints" not in [one.code for one in state.open_findings]
     keys.act(session, "undo")
     loop.rest(session)

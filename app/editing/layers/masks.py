@@ -25,6 +25,9 @@ Strengths = NDArray[np.float64]
 
 def put_mask(session: Session, strengths: Strengths) -> None:
     """Give the chosen layer a mask, shape (n,), in a step of undo; show it."""
+    place = session.state.layer
+    if place is None:  # nothing is chosen any longer
+        return
     strengths = np.round(np.clip(strengths, 0, 1) * STEPS) / STEPS
     some = np.flatnonzero(strengths)
     mask = EVERYWHERE
@@ -32,7 +35,7 @@ def put_mask(session: Session, strengths: Strengths) -> None:
         mask = Mask(vertices=some, strengths=strengths[some])
     session.state.weights_shown = "mask"  # first: undo takes the mask back before the colours
     session.history.part()
-    set_layer(session, session.state.layer, mask=mask)
+    set_layer(session, place, mask=mask)
 
 
 def _changes(change: Callable[[Session, Strengths], Strengths]) -> Callable[[Session], None]:

@@ -142,8 +142,11 @@ def exchange_joints(session: Session) -> None:
     if not state.finding.startswith(EXPORT):  # it is about the file's weights
         edits = with_base(edits, from_file=True)
     content, mask = exchange(finding, state.rig.skeleton.names), Mask(vertices=finding.vertices)
+    edits, place = put_layer(edits, Layer(content, mask, f"Mended: {finding.title}"))
     session.history.part()
-    correct(session, put_layer(edits, Layer(content, mask, f"Mended: {finding.title}"))[0])
+    correct(session, edits)
+    if state.edits is edits:
+        state.layer = place
 
 
 def take_back(session: Session) -> None:
