@@ -37,7 +37,7 @@ MAYA = """<?xml version="1.0"?>
   </weights>
 </deformerWeight>
 """
-"""As Maya exports a plane."""
+"""In the form that Maya's documentation describes; no file of Maya itself was at hand."""
 
 
 def crowd(seed=0):
