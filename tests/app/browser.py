@@ -318,7 +318,7 @@ class Visit:
     @property
     def bone(self) -> Locator:
         """The list that says which bone is chosen."""
-        return self.page.get_by_role("combobox", name="Bone")
+        return self.page.get_by_role("combobox", name="Bone", exact=True)
 
     def wait_until_bound(self) -> None:
         """Wait until the weights are there and drawn."""

@@ -175,5 +175,5 @@ def test_a_presentation_has_one_caption_and_its_keys_only_walk(visit):
     assert "stage=1" in page.url
     page.keyboard.press("Escape")
     expect(card(visit)).not_to_have_class(re.compile("staged"))
-    expect(page.get_by_role("combobox", name="Bone")).to_have_text("chest")
+    expect(page.get_by_role("combobox", name="Bone", exact=True)).to_have_text("chest")
     notes.close()

@@ -20,7 +20,7 @@ def test_pairs_are_stepped_through_and_overruled(browser, tmp_path):
         visit.expect_text("Pair 1 of 3.")
         visit.settle()
         first = visit.look()
-        expect(visit.page.get_by_role("combobox", name="Bone")).to_have_count(0)
+        expect(visit.page.get_by_role("combobox", name="Bone", exact=True)).to_have_count(0)
         visit.button("Next").click()
         visit.expect_text("Pair 2 of 3.")
         visit.settle()
