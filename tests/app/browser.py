@@ -395,7 +395,7 @@ class Visit:
 
     def choose(self, label: str, option: str) -> None:
         """Take an option of a menu."""
-        self.page.get_by_role("combobox", name=label).click()
+        self.page.get_by_role("combobox", name=label, exact=True).click()
         self.page.get_by_role("menuitem", name=option, exact=True).click()
         # Until the menu is gone, and not only its entries, its curtain takes what is clicked.
         expect(self.page.locator(".MuiPopover-root")).to_have_count(0)
