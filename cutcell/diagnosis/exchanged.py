@@ -41,19 +41,19 @@ def _other_side(
     partner = names if subject.mirror is None else subject.mirror.joint
     has_bone = np.isin(np.arange(len(partner)), bones.joint)
     crossed, sound = np.zeros((2, len(weights)))
-    rows, across, own = [], np.zeros(len(partner)), np.zeros(len(partner))
+    rows, across, sound_sum = [], np.zeros(len(partner)), np.zeros(len(partner))
     for j in np.flatnonzero((partner >= 0) & has_bone & has_bone[partner]).tolist():
         if partner[j] == j:
             continue
         at = np.flatnonzero((weights[:, j] > VISIBLE_WEIGHT) & subject.is_used)
-        here, there = (bones_distance(bones, int(k), points[at]) for k in (j, partner[j]))
-        far = there < here
+        to_joint, to_partner = (bones_distance(bones, int(k), points[at]) for k in (j, partner[j]))
+        far = to_partner < to_joint
         rows.append((j, at, far))
-        across[j], own[j] = weights[at[far], j].sum(), weights[at[~far], j].sum()
+        across[j], sound_sum[j] = weights[at[far], j].sum(), weights[at[~far], j].sum()
     is_wrong = np.zeros(len(partner), np.bool_)
     for j, at, far in rows:
         # Most of the skin at the partner follows this joint.
-        is_wrong[j] = across[j] > own[partner[j]]
+        is_wrong[j] = across[j] > sound_sum[partner[j]]
         crossed[at[far]] += weights[at[far], j] * is_wrong[j]
         sound[at[~far]] += weights[at[~far], j]
     if not is_wrong.any():
@@ -74,9 +74,9 @@ def _permuted(
     joints = np.intersect1d(np.flatnonzero(leads.any(axis=0)), bones.joint)
     if len(joints) < 2:
         return
-    own = [np.flatnonzero(leads[:, j]) for j in joints]
-    some = [at[:: -(-len(at) // SAMPLES)] for at in own]
-    begin, at = np.cumsum([0, *map(len, some)]), np.concatenate(some)
+    led = [np.flatnonzero(leads[:, j]) for j in joints]
+    samples = [at[:: -(-len(at) // SAMPLES)] for at in led]
+    begin, at = np.cumsum([0, *map(len, samples)]), np.concatenate(samples)
     gap = np.stack(
         [np.add.reduceat(bones_distance(bones, int(k), points[at]), begin[:-1]) for k in joints], 1
     )
@@ -129,15 +129,15 @@ def _better(subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int])
         )
     if mirror is None or then >= now:
         text = " The mean distance from the bones falls from {:.1%} to {:.1%} of the size."
-        some = vertices[:: -(-len(vertices) // MOST)]
-        points, weights = subject.mesh.points[subject.welded[some]], subject.weights[some]
+        samples = vertices[:: -(-len(vertices) // MOST)]
+        points, weights = subject.mesh.points[subject.welded[samples]], subject.weights[samples]
         sums = np.zeros(3)
         for joint, target in pairs.items():
             weight = weights[:, joint]
             at = np.flatnonzero(weight)
-            here, there = (
+            to_joint, to_target = (
                 bones_distance(subject.distances.bones, k, points[at]) for k in (joint, target)
             )
-            sums += weight[at] @ here, weight[at] @ there, weight[at].sum()
+            sums += weight[at] @ to_joint, weight[at] @ to_target, weight[at].sum()
         now, then = (sums[:2] / sums[2]).tolist()
     return text.format(now, then)

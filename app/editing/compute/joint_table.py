@@ -23,7 +23,7 @@ def branch_pairs(skeleton: Skeleton, one: int, other: int) -> dict[int, int]:
     Raises
     ------
     ParameterError
-        One of the branches lies in the other.
+        One of the branches contains the other.
     """
     if skeleton.subtree[one, other] or skeleton.subtree[other, one]:
         names = skeleton.names[one], skeleton.names[other]

@@ -29,10 +29,10 @@ def put_mask(session: Session, strengths: Strengths) -> None:
     if place is None:  # nothing is chosen any longer
         return
     strengths = np.round(np.clip(strengths, 0, 1) * STEPS) / STEPS
-    some = np.flatnonzero(strengths)
+    masked = np.flatnonzero(strengths)
     mask = EVERYWHERE
     if (strengths < 1).any():
-        mask = Mask(vertices=some, strengths=strengths[some])
+        mask = Mask(vertices=masked, strengths=strengths[masked])
     session.state.weights_shown = "mask"  # first: undo takes the mask back before the colours
     session.history.part()
     set_layer(session, place, mask=mask)

@@ -87,7 +87,7 @@ def resolve(
 
     def elsewhere(one: NDArray[np.intp], other: NDArray[np.intp]) -> NDArray[np.bool_]:
         straight = np.linalg.norm(where[one] - where[other], axis=1)
-        return _apart(place[one], place[other]) > DETOUR * straight + MIN_DETOUR
+        return _landmark_distance(place[one], place[other]) > DETOUR * straight + MIN_DETOUR
 
     ambiguous = np.zeros(count, np.bool_)
     ambiguous[point[elsewhere(np.arange(len(point)), nearest[point])]] = True
@@ -103,7 +103,7 @@ def resolve(
         number = np.cumsum(front) - 1
         tried = np.flatnonzero(front[point])
         around = around[number[point[tried]]] / support[point[tried], None]
-        cost = _apart(place[tried], around) + candidates.distance[tried]
+        cost = _landmark_distance(place[tried], around) + candidates.distance[tried]
         best = tried[np.lexsort((cost, point[tried]))]
         choice[point[best[::-1]]] = best[::-1]  # the first one is written last
         alike = tried[~elsewhere(tried, choice[point[tried]])]
@@ -112,7 +112,7 @@ def resolve(
     return choice, choice != nearest
 
 
-def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+def _landmark_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return at least how far points are apart through the body, (c,)."""
     return np.asarray(np.abs(one - other).max(axis=1))
 

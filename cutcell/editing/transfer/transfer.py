@@ -191,17 +191,17 @@ def transfer(
     index = joined.welded.index
     results = []
     for rig, begin, end in zip(rigs, bounds[:-1], bounds[1:], strict=True):
-        own = index[begin:end]
-        weights = rows[own] @ joint_matrix(source.skeleton, source.weights, rig.skeleton, names)
+        welded = index[begin:end]
+        weights = rows[welded] @ joint_matrix(source.skeleton, source.weights, rig.skeleton, names)
         weights = _few(weights, rig, max_influences)
-        state = matches.state[own]
-        weights, kept = _merged(rig, weights, joints, mix, locked, mask, max_influences)
+        state = matches.state[welded]
+        weights, is_unchanged = _merged(rig, weights, joints, mix, locked, mask, max_influences)
         results.append(
             Transfer(
                 weights,
-                np.where(kept, UNCHANGED, state).astype(np.uint8),
-                matches.distance[own],
-                matches.resolved[own],
+                np.where(is_unchanged, UNCHANGED, state).astype(np.uint8),
+                matches.distance[welded],
+                matches.resolved[welded],
                 rig.with_weights(weights),
             )
         )
@@ -252,20 +252,20 @@ def _merged(
         part = mix * strength
     if joints is None and not len(locked) and (part == 1).all():
         return weights, np.zeros(len(weights), np.bool_)
-    own = rig.weights
-    if own is None:
+    stored = rig.weights
+    if stored is None:
         raise WeightsError(
             f"{rig.name} has no weights of its own to keep; leave out joints, mix, locked and mask"
         )
-    has_own = np.asarray(own.any(axis=1))
+    has_stored = np.asarray(stored.any(axis=1))
     if joints is not None:
         chosen = [joint_index(rig.skeleton, joint) for joint in joints]
-        new = lock_joints(rig.with_weights(weights), own, chosen, max_influences)
-        weights = np.where(has_own[:, None], new, weights)
-    part = np.where(has_own, part, 1.0)  # no row of zeros
-    weights = (1 - part[:, None]) * own + part[:, None] * weights
-    kept = np.asarray(part == 0)
+        new = lock_joints(rig.with_weights(weights), stored, chosen, max_influences)
+        weights = np.where(has_stored[:, None], new, weights)
+    part = np.where(has_stored, part, 1.0)  # no row of zeros
+    weights = (1 - part[:, None]) * stored + part[:, None] * weights
+    is_unchanged = np.asarray(part == 0)
     if ((part > 0) & (part < 1)).any():
         few = _few(weights, rig, max_influences)
-        weights = np.where(kept[:, None], own, few)
-    return lock_joints(rig, weights, list(locked), max_influences), kept
+        weights = np.where(is_unchanged[:, None], stored, few)
+    return lock_joints(rig, weights, list(locked), max_influences), is_unchanged

@@ -112,12 +112,12 @@ def _read_ngskintools(text: str) -> list[MeshWeights]:
     count = max((len(i["weights"]) for layer in layers for i in layer["influences"]), default=0)
     total = np.zeros((count, len(names)))
     for layer in reversed(layers):  # the last one is the lowest
-        own = np.zeros_like(total)
+        rows = np.zeros_like(total)
         for influence in layer["influences"]:
-            own[:, names.index(influence["name"])] = influence["weights"]
+            rows[:, names.index(influence["name"])] = influence["weights"]
         mask = np.array(layer.get("mask") or np.ones(count), float)[:, None]
-        opacity = np.where(own.any(axis=1, keepdims=True), float(layer["opacity"]) * mask, 0.0)
-        total = (1 - opacity) * total + opacity * own
+        opacity = np.where(rows.any(axis=1, keepdims=True), float(layer["opacity"]) * mask, 0.0)
+        total = (1 - opacity) * total + opacity * rows
     mesh = data.get("mesh") or {}
     points = mesh.get("vertPositions")
     places = None if points is None else np.array(points, float).reshape(count, 3)
@@ -143,14 +143,14 @@ def _read_csv(text: str) -> list[MeshWeights]:
     for row in rows[1:]:
         by_mesh.setdefault(row[0], []).append(row)
     meshes = []
-    for mesh, own in by_mesh.items():
-        joints = tuple(dict.fromkeys(row[5] for row in own))
+    for mesh, of_mesh in by_mesh.items():
+        joints = tuple(dict.fromkeys(row[5] for row in of_mesh))
         number = {joint: j for j, joint in enumerate(joints)}
         # A vertex without weights has no row; the numbers of the others only tell them apart.
-        vertices = sorted({_index(row[1], MAX_VERTICES) for row in own})
+        vertices = sorted({_index(row[1], MAX_VERTICES) for row in of_mesh})
         place = {vertex: v for v, vertex in enumerate(vertices)}
         weights, points = np.zeros((len(vertices), len(joints))), np.zeros((len(vertices), 3))
-        for _, vertex, x, y, z, joint, weight in own:
+        for _, vertex, x, y, z, joint, weight in of_mesh:
             v = place[int(vertex)]
             weights[v, number[joint]], points[v] = float(weight), (float(x), float(y), float(z))
         meshes.append(MeshWeights(mesh, joints, weights, points))
