@@ -109,6 +109,13 @@ IN_SIGHT = """(code) => {
   }
 }"""
 
+# No control has the focus, as on a page that has just come.
+BLUR = """() => {
+  let part = document.activeElement
+  while (part?.shadowRoot?.activeElement) { part = part.shadowRoot.activeElement }
+  part?.blur()
+}"""
+
 # What is printed of a page where a test failed.
 STATE = {
     "address": "location.search",
@@ -287,6 +294,7 @@ class Visit:
         try:
             for _ in range(2):  # a card, and what is under it
                 self.page.keyboard.press("Escape")
+            self.page.evaluate(BLUR)
             self.page.mouse.move(2, 2)
             self.settle()
             if self.beginning != self.first:

@@ -89,13 +89,11 @@ const TOOLS = [
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
 
-// Elements that handle keys themselves.
-const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
-  + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], "
-  + "dialog"
-// Those that take letters, brackets and Escape; sliders and switches do not.
+// Elements that take letters, brackets and Escape; sliders, switches and closed lists do not.
 const WRITTEN = "input:not([type=range], [type=checkbox], [type=radio]), textarea, select, "
-  + "[contenteditable], [role=combobox], [role=listbox], [role=menu], [role=tree], dialog"
+  + "[contenteditable], [role=listbox], [role=menu], [role=tree], dialog"
+// Those that take arrows and the space bar.
+const MOVED = "input, [role=combobox], [role=slider], [role=spinbutton], [role=tab]"
 const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
@@ -174,16 +172,17 @@ export class Keys {
   pressed(e) {
     if (e.defaultPrevented) { return }
     const over = elementsWithKey(e)
+    // A number that was entered is done with: its box would not take another one otherwise.
+    if (e.key === "Enter") { setTimeout(() => over.find((part) => part.matches(BOX))?.blur()) }
+    const goesTo = (elements) => over.some((part) => part.matches(elements))
+    if (goesTo(WRITTEN)) { return }
     const brush = this.brushAct(e)
-    if (brush && !over.some((part) => part.matches(WRITTEN))) {
+    if (brush) {
       e.preventDefault()
       this.act(brush)
       return
     }
     if (e.altKey) { return }
-    // A number that was entered is done with: its box would not take another one otherwise.
-    if (e.key === "Enter") { setTimeout(() => over.find((part) => part.matches(BOX))?.blur()) }
-    if (over.some((part) => part.matches(TYPED))) { return }
     const control = e.ctrlKey || e.metaKey
     const name = e.key.toLowerCase()
     // Some keyboards need Shift for signs.
@@ -199,8 +198,10 @@ export class Keys {
       act = "frame"
     } else if (SELECTION_ACTS[selecting]) {
       act = SELECTION_ACTS[selecting]
-    } else if (e.key === " " && !over.some((part) => part.matches(PRESSED))) {
-      act = "play"
+    } else if (goesTo(MOVED)) {
+      return
+    } else if (e.key === " ") {
+      act = goesTo(PRESSED) ? null : "play"
     } else if (!e.shiftKey && !this.turnable()) {
       act = {
         ArrowLeft: "previous", ArrowRight: "next", ArrowUp: "parent", ArrowDown: "child",
