@@ -31,7 +31,7 @@ from ...document.state import State
 from ...files.upload_cache import KEPT_SECONDS, MB
 
 MAX_OF_A_PAGE = 32 * MB
-"""Memory of what a page that has ended leaves; of a longer history the newest steps are kept."""
+"""Memory of what a page that has ended leaves; of a longer history the newest steps stay."""
 MAX_BYTES = 256 * MB
 """Memory of what all pages leave that have ended."""
 
@@ -43,7 +43,7 @@ PLAIN = (param.Boolean, param.Selector, param.Number, param.String)
 
 
 @dataclass(frozen=True)
-class Kept:
+class Handover:
     """What the next page takes over from a page, besides its address.
 
     Parameters
@@ -77,7 +77,7 @@ class Kept:
         return now is not None and (now.source, self.step) == (request.source, step)
 
 
-def keep(session: Session) -> Kept | None:
+def handover_of(session: Session) -> Handover | None:
     """Return what the next page takes over; None if nothing can be opened again."""
     state, before = session.state, session.before_lesson
     if state.own is None or not session.source:
@@ -89,7 +89,7 @@ def keep(session: Session) -> Kept | None:
             document=before.document.put_away(),
             tools=_plain(state, before.tools),
         )
-    return Kept(
+    return Handover(
         history=session.history.put_away(),
         step=state.step,
         tools={**_plain(state, state.param.values()), "layer": state.layer},
@@ -107,7 +107,7 @@ def _plain(state: State, values: Mapping[str, Any]) -> dict[str, Any]:
 
 def _contents(own: Rig) -> tuple[Any, ...]:
     weights = np.ascontiguousarray([] if own.weights is None else own.weights)
-    digest = hashlib.blake2b(weights).digest()
+    digest = hashlib.blake2b(weights.data).digest()
     return (*data_fingerprint(own.mesh, own.skeleton).values(), digest)
 
 
@@ -117,7 +117,7 @@ class _Ended:
 
     pickled: bytes
     arrays: list[pickle.PickleBuffer]
-    left: float
+    ended: float
     is_taken: bool = False
 
     @property
@@ -157,28 +157,28 @@ class Pages:
         """Keep what a page leaves that is about to end, the newest steps if it is large."""
         with self._lock:
             session = self._open.pop(key, None)
-            kept = None if session is None else keep(session)
-            if kept is None:
+            handover = None if session is None else handover_of(session)
+            if handover is None:
                 return
-            ended = _packed(kept)
-            while ended.size > self._most_of_a_page and kept.history.shorten():
-                ended = _packed(kept)
+            ended = _packed(handover)
+            while ended.size > self._most_of_a_page and handover.history.shorten():
+                ended = _packed(handover)
             if ended.size <= self._most_of_a_page:
                 self._ended[key] = ended
             self._sweep()
 
-    def find(self, key: str) -> Kept | None:
-        """Return a copy of what a page has, or had when it ended; None if it is not kept."""
+    def find(self, key: str) -> Handover | None:
+        """Return a copy of what a page has, or had when it ended; None if there is nothing left."""
         with self._lock:
             self._sweep()
             session, ended = self._open.get(key), self._ended.get(key)
             if session is not None:
-                return keep(session)
+                return handover_of(session)
             if ended is None:
                 return None
             ended.is_taken = True
-            kept: Kept = pickle.loads(ended.pickled, buffers=ended.arrays)
-            return kept
+            handover: Handover = pickle.loads(ended.pickled, buffers=ended.arrays)
+            return handover
 
     def sweep(self) -> None:
         """Remove what is old."""
@@ -188,9 +188,9 @@ class Pages:
     def _sweep(self) -> None:
         """Remove what is old, and make room: first what was taken over, then the oldest."""
         old = time.monotonic() - self._seconds
-        self._ended = {key: one for key, one in self._ended.items() if one.left > old}
+        self._ended = {key: one for key, one in self._ended.items() if one.ended > old}
         size = self.size
-        order = sorted(self._ended.items(), key=lambda item: (not item[1].is_taken, item[1].left))
+        order = sorted(self._ended.items(), key=lambda item: (not item[1].is_taken, item[1].ended))
         for key, one in order:
             if size <= self._most:
                 break
@@ -202,42 +202,43 @@ PAGES = Pages()
 """The pages of this server."""
 
 
-def _packed(kept: Kept) -> _Ended:
+def _packed(handover: Handover) -> _Ended:
     arrays: list[pickle.PickleBuffer] = []
-    pickled = pickle.dumps(kept, 5, buffer_callback=arrays.append)
+    pickled = pickle.dumps(handover, 5, buffer_callback=arrays.append)
     return _Ended(pickled, arrays, time.monotonic())
 
 
 def arrive(session: Session, query: str, first: Request, pages: Pages = PAGES) -> None:
     """Open what an address says, and go on with the page before where that showed the same."""
     key, request = session.view.page_before, loading.arrival(session, query, first)
-    kept = pages.find(key) if key else None
-    if kept is not None and kept.shows(request):
+    handover = pages.find(key) if key else None
+    if handover is not None and handover.shows(request):
         session.paths = first.paths
-        session.uploads.list_again(kept.listed)
-        request = _continued(session, request, kept)
-    elif kept is None and key and {"edits", "repairs"} & request.arrival.keys():
+        session.uploads.list_again(handover.listed)
+        request = _continued(session, request, handover)
+    elif handover is None and key and {"edits", "repairs"} & request.arrival.keys():
         request = replace(request, message=f"{request.message} {GONE}".strip())
     loading.open_character(session, request)
 
 
-def _continued(session: Session, request: Request, kept: Kept) -> Request:
+def _continued(session: Session, request: Request, handover: Handover) -> Request:
     """Return a request for the document of the page before."""
 
     def note(now: Document) -> None:
-        session.history, session.before_lesson = kept.history, kept.before_lesson
+        session.history, session.before_lesson = handover.history, handover.before_lesson
         session.history.replace_current(now)
 
     def select() -> None:
-        if kept.chosen is not None:
-            session.state.brush_selection = Selection(session.state.rig.mesh, kept.chosen)
+        if handover.chosen is not None:
+            session.state.brush_selection = Selection(session.state.rig.mesh, handover.chosen)
 
     def instead(own: Rig) -> Request | None:
-        if not kept.contents or kept.contents == _contents(own):
+        if not handover.contents or handover.contents == _contents(own):
             return None
         return replace(request, rig=own, message=f"{request.message} {CHANGED}".strip())
 
+    choices = {**request.choices, **handover.tools}
+    document = handover.history.now
     return replace(
-        request, choices={**request.choices, **kept.tools}, document=kept.history.now, note=note,
-        then=select, instead=instead,
-    )  # fmt: skip
+        request, choices=choices, document=document, note=note, then=select, instead=instead
+    )
