@@ -100,7 +100,8 @@ def _finding(
 ) -> Iterator[Finding]:
     if not len(joints):
         return
-    names = {joint: subject.name(joint) for joint in pairs}
+    names, order = {joint: subject.name(joint) for joint in pairs}, _order(subject, pairs)
+    rows = subject.weights[vertices]
     each = [(a, b) for a, b in pairs.items() if pairs.get(b) != a or a < b]
     yield from found(
         code,
@@ -110,13 +111,20 @@ def _finding(
         pose=pose_of(subject, int(joints[0]), vertices),
         exchanged=tuple(pairs.items()),
         better=_better(subject, vertices, pairs),
+        change=subject.weight_share(vertices, np.abs(rows - rows[:, order]).sum(axis=1) / 2),
     )
+
+
+def _order(subject: Subject, pairs: dict[int, int]) -> NDArray[np.intp]:
+    """Return for each joint the one whose weight it gets, shape (j,)."""
+    order = np.arange(subject.weights.shape[1])
+    order[[*pairs.values()]] = [*pairs]
+    return order
 
 
 def _better(subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int]) -> str:
     """Say by how much an exchange brings weights nearer to the other side's, or else to bones."""
-    mirror, order = subject.mirror, np.arange(subject.weights.shape[1])
-    order[[*pairs.values()]] = [*pairs]
+    mirror, order = subject.mirror, _order(subject, pairs)
     text = " The L1 difference from the other side falls from {:.2f} to {:.2f}."
     if mirror is not None:
         other = mirror.vertex[vertices]
