@@ -162,7 +162,8 @@ def _noisy(
     subject: Subject, weights: NDArray[np.float64], apart: NDArray[np.float64] | None
 ) -> Iterator[Finding]:
     """Look for rows that differ from those of their neighbours, and from the other side's."""
-    neighbours, mesh = Neighbours.of(subject.rig.mesh), subject.mesh
+    mesh = subject.mesh
+    neighbours = Neighbours.along(mesh)
     beyond = _beyond_neighbours(weights[mesh.first], neighbours.links)
     if apart is None or subject.mirror is None:
         is_noise, adjoins = beyond > STANDS_OUT_ALONE, beyond > UNLIKE_AROUND
