@@ -121,7 +121,7 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     ),
     "wrong eye": lambda hands: _attach_by_finding(hands, "Head"),
     "coat": lambda hands: _transfer(hands, "part = 1"),
-    "trident": lambda hands: _attach_by_finding(hands, "Bip001 Prop1"),
+    "trident": lambda hands: _attach_by_finding(hands, "Prop1"),
     "fingers": lambda hands: _exchange_by_finding(hands, "Exchanged joints"),
     "fingers, by names": lambda hands: _exchange_by_table(hands, "index-* <-> middle-*"),
     "other side": lambda hands: _exchange_by_finding(hands, "Skin that follows the other side"),

@@ -197,7 +197,7 @@ def _noisy(
         joints=np.unique(joints),
         details=lines,
         pose=pose_of(subject, joints[0], vertices),
-        whom="from their neighbours" + ("" if apart is None else " and from the other side"),
+        whom="from the skin around" + ("" if apart is None else " and from the other side"),
         change=total,
     )
 

@@ -111,6 +111,12 @@ def test_each_damage_has_a_repair():
 
 
 @pytest.mark.nightly
+def test_made_up_damage_is_mended_on_the_page(capsys):
+    mending.main(["--only", "twist;twist, by mask"])  # exits where it is not
+    assert "legs of Auto-Rig Pro" in capsys.readouterr().out
+
+
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", DAMAGES)
 def test_real_characters_are_damaged_in_some_rows_only(name, tmp_path):
     one = DAMAGES[name]
