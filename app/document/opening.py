@@ -276,7 +276,7 @@ def _arrived(session: Session, rig: Rig, panel: str, arrival: Mapping[str, Any])
     """Return what an address says of a character, as values of the state."""
     state, names = session.state, list(rig.skeleton.names)
     values: dict[str, Any] = {}
-    if -1 <= arrival.get("clip", -2) < len(rig.clips):
+    if -2 <= arrival.get("clip", -3) < len(rig.clips):
         values["clip"] = arrival["clip"]
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         values["vertex"] = arrival["vertex"]

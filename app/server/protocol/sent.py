@@ -268,6 +268,7 @@ class ToBrowser(TypedDict, total=False):
     lasso: Through | None
     clip: Motion | None
     playing: bool
+    time: float
     animation: Wave | None
     address: str
     link: str
