@@ -206,6 +206,26 @@ def test_motion_and_scale_change_nothing():
     np.testing.assert_allclose(result.distance, 100 * expected.distance, atol=1e-6)
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_rig_lies_where_it_is_in_the_scene(body, mirrored):
+    """A file may hold the body in centimetres, with z up, and the clothes as they stand."""
+    world = np.eye(4)
+    world[:3] = [[100, 0, 0, 5], [0, 0, -100 if mirrored else 100, 6], [0, -100, 0, 7]]
+    axes = np.tile(np.eye(3), (len(body.skeleton.joints), 1, 1))
+    source = replace(body, world=world, skeleton=replace(body.skeleton, orientations=axes))
+    mesh = shell(body)
+    faces = mesh.faces[:, ::-1] if mirrored else mesh.faces
+    placed = TriangleMesh(mesh.vertices @ world[:3, :3].T + world[:3, 3], faces)
+    expected = cutcell.transfer(source, mesh)
+    result = cutcell.transfer(source, Rig(placed, Skeleton([], [])))
+    np.testing.assert_allclose(result.weights, expected.weights, atol=1e-9)
+    np.testing.assert_array_equal(result.state, expected.state)
+    np.testing.assert_array_equal(expected.rig.world, world)
+    joints = source.skeleton.joints @ world[:3, :3].T + world[:3, 3]
+    np.testing.assert_allclose(result.rig.skeleton.joints, joints)
+    np.testing.assert_allclose(result.rig.skeleton.orientations, world[:3, :3] / 100 @ axes)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_order_of_vertices_and_faces_changes_nothing(seed):
     rng = np.random.default_rng(seed)
