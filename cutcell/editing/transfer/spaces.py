@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...rig import Rig, Skeleton, TriangleMesh
+from ...rig.rig import FAR_OUTSIDE, times_outside
 
 SAME = 1e-6
 """Largest relative difference of the places of two rigs that share a space."""
@@ -31,10 +32,16 @@ def moved_mesh(mesh: TriangleMesh, matrix: NDArray[np.float64] | None) -> Triang
 
 
 def with_skeleton(target: Rig, source: Rig) -> Rig:
-    """Return a target without joints with the source's, where they are in the scene."""
+    """Return a target without joints with the source's, where they are in the scene.
+
+    Joints that are too far from a small target, such as an eye, do not deform it.
+    """
     matrix, skeleton = between(target, source), source.skeleton
     if matrix is not None:
         skeleton = moved_skeleton(skeleton, np.linalg.inv(matrix))
+    near = skeleton.deform & (times_outside(skeleton, target.mesh.bounds) <= FAR_OUTSIDE)
+    if near.any():  # else they are in different units
+        skeleton = replace(skeleton, deform=near)
     return replace(target, skeleton=skeleton, weights=None, weight_sums=None)
 
 

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 
 from ...checks import check_flag, check_integer, check_number
 from ...errors import ParameterError, WeightsError
-from ...rig import Rig, TriangleMesh
+from ...rig import Rig, Skeleton, TriangleMesh
 from ...rig.checks import as_array
 from ...rig.inputs import MeshLike, as_mesh
 from ...runtime.progress import Progress, silent
@@ -214,7 +214,7 @@ def transfer(
 def _with_skeleton(target: Any, source: Rig) -> Rig:
     """Return a target as a rig, with the source's skeleton if it has none."""
     if not isinstance(target, Rig):
-        return Rig(as_mesh(target), source.skeleton, world=source.world)
+        target = Rig(as_mesh(target), Skeleton([], []), world=source.world)
     return target if len(target.skeleton.joints) else with_skeleton(target, source)
 
 

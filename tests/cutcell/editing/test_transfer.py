@@ -157,6 +157,17 @@ def test_normals_count_where_fabric_is_not_on_the_skin(body):
     assert states["flipped"][0] == MATCHED
 
 
+def test_a_small_part_does_without_the_joints_that_are_far_from_it(body):
+    middle = np.array([0.05, 0.2, 0.1])
+    button = TriangleMesh((body.mesh.vertices - [0.5, 0.1, 0.1]) * 0.01 + middle, body.mesh.faces)
+    result = cutcell.transfer(body, button)
+    np.testing.assert_allclose(result.weights, [[1.0, 0, 0]] * len(result.weights), atol=0.02)
+    assert result.rig.skeleton.deform.tolist() == [True, False, False]
+    assert result.rig.skeleton.names == body.skeleton.names
+    with pytest.raises(SkeletonError, match="same units"):
+        cutcell.transfer(body, TriangleMesh(button.vertices - [0, 500, 0], button.faces))
+
+
 def test_a_component_without_match_is_refused_and_still_has_weights(body):
     far = TriangleMesh(body.mesh.vertices + np.array([0, 3, 0]), body.mesh.faces)
     result = cutcell.transfer(body, far)
