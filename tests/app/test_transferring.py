@@ -1,5 +1,6 @@
 """Clothes dropped beside the open character: opened with its weights as a layer, or refused."""
 
+import shlex
 from dataclasses import replace
 
 import numpy as np
@@ -15,10 +16,14 @@ from cutcell_app.editing.select.saved import take
 from cutcell_app.editing.transfer.controls import transfer_to
 from cutcell_app.features.scenes import resolve
 from cutcell_app.features.weights import controls
+from cutcell_app.shell.export_code import copy_command, copy_script
 from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.export import export_bound
 from tests.app.loop import settled
+from tests.cutcell.cli.conftest import run
 from tests.viewers.arm import WORLD, arm_rig
+
+__all__ = ["run"]
 
 
 @pytest.fixture
@@ -144,6 +149,26 @@ def test_another_transfer_adds_a_layer_and_renews_the_selections(dressing, loop,
     ]  # fmt: skip
     assert set(state.edits.selections) == {"Matched"}
     assert state.layer == 1
+
+
+def test_copied_code_comes_with_the_files_that_it_reads(dressing, loop, tmp_path, monkeypatch, run):
+    copied = []
+
+    def save(name, content):
+        (tmp_path / name).write_bytes(content)
+
+    monkeypatch.setattr(dressing.view, "offer", save)
+    monkeypatch.setattr(dressing.view, "answer", lambda copy: copied.append(copy["text"]))
+    monkeypatch.chdir(tmp_path)
+    drop(dressing, loop, written(tmp_path / "sleeve.obj", sleeve()))
+    out = tmp_path / "sleeve-bound.glb"
+    copy_command(dressing)
+    result = run(*shlex.split(copied[-1])[1:])
+    assert result.exit_code == 0, result.stderr
+    np.testing.assert_allclose(cutcell.load(out).weights, dressing.state.weights, atol=1e-6)
+    copy_script(dressing)
+    exec(copied[-1], {})
+    np.testing.assert_allclose(cutcell.load(out).weights, dressing.state.weights, atol=1e-6)
 
 
 @pytest.mark.parametrize(

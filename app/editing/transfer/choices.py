@@ -9,7 +9,7 @@ class Choices(param.Parameterized):
     """Which vertices of a dropped mesh are matched; see `cutcell.transfer`."""
 
     transfer_distance = param.Number(
-        5.0, bounds=(0, 30), step=0.5, label="Distance (% of size)",
+        5.0, bounds=(0, 30), step=0.5, label="Distance (% of diagonal)",
         doc="Greatest distance of a match, in percent of the diagonal of the bounding box.",
     )  # fmt: skip
     transfer_angle = param.Number(

@@ -35,6 +35,7 @@ from ..layers.commands import painted
 
 NAMES = [name.capitalize() for name in STATES]
 """Names of the saved selections of vertices by state."""
+WORDS = {"resolved": "ambiguous matches resolved"}
 ENDED = "writing it came to a sudden end; there may be too little memory"
 
 
@@ -110,6 +111,7 @@ class Transferring(Task):
         self.drop()
         group = session.uploads.cache.begin(len(result.content), session.uploads)
         session.uploads.hold(group.key)
+        group.is_made = True
         group.paths = [group.folder / result.name]
         group.written = group.paths[0].write_bytes(result.content)
 
@@ -149,7 +151,9 @@ def with_layer(target: Rig, result: Transfer, source: str) -> tuple[Edits, int]:
 
 def report(name: str, result: Transfer) -> str:
     """Return how many vertices were matched, in-painted and refused, and what to do about these."""
-    counts = [f"{number:,} {state}" for state, number in result.report.items() if number]
+    counts = [
+        f"{number:,} {WORDS.get(what, what)}" for what, number in result.report.items() if number
+    ]
     text = f"{name}: {', '.join(counts)}."
     if not result.report[STATES[REFUSED]]:
         return text
