@@ -21,6 +21,7 @@ from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.export import export_bound
 from tests.app.loop import settled
 from tests.cutcell.cli.conftest import run
+from tests.cutcell.cli.files import write_obj
 from tests.viewers.arm import WORLD, arm_rig
 
 __all__ = ["run"]
@@ -49,10 +50,7 @@ def sleeve(high=0.0, z=0.0):
 
 def written(path, mesh):
     """Write a mesh as OBJ."""
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
-    lines += ["f " + " ".join(map(str, face)) for face in (mesh.faces + 1).tolist()]
-    path.write_text("\n".join(lines) + "\n")
-    return path
+    return write_obj(path, mesh.vertices.tolist(), mesh.faces.tolist())
 
 
 def drop(session, loop, *paths):

@@ -91,8 +91,9 @@ class Transferring(Task):
                 )  # fmt: skip
                 if (result.state == REFUSED).all():
                     raise MeshError(
-                        f"no vertex lies on {shown_name(source.name)}, within {percent:g}% of its "
-                        "diagonal. Place the mesh on it in the same units, or raise the distance"
+                        f"no vertex is close enough to {shown_name(source.name)} (within "
+                        f"{percent:g}% of its diagonal). Place the mesh on the character, in the "
+                        "same units, or raise the distance"
                     )
                 edits, layer = with_layer(target, result, Path(source.name).stem)
             settings = settings_with_layers(target, method, result.weights, edits)
