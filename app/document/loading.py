@@ -1,5 +1,6 @@
 """Commands that open a character: of an address, a demo, files, or one of the history."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -84,10 +85,12 @@ def _step(session: Session, by: int) -> Request | None:
     return Request(document.source, document=document, note=partial(history.go, by))
 
 
-def receiver(session: Session) -> Receiver:
-    """Return what takes files from the browser and loads them."""
+def receiver(
+    session: Session, received: Callable[[Session, Group], None] = load_upload
+) -> Receiver:
+    """Return what takes files from the browser, and loads them unless something else is said."""
     uploads = session.uploads
-    made = Receiver(uploads.cache, uploads, lambda group: load_upload(session, group), session.fail)
+    made = Receiver(uploads.cache, uploads, partial(received, session), session.fail)
     uploads.when_closed(made.drop)
     return made
 

@@ -48,6 +48,8 @@ class Group:
         Number of open pages that list it. It is kept for them unless others need the space.
     left : float
         Time of its last use.
+    is_made : bool
+        Whether the page made them: a person does not have them.
     """
 
     key: str
@@ -59,6 +61,7 @@ class Group:
     users: int = 1
     listed: int = 0
     left: float = 0.0
+    is_made: bool = False
 
 
 class UploadCache:
@@ -111,6 +114,13 @@ class UploadCache:
             if group is not None:
                 group.listed += count
                 group.left = time.monotonic()
+
+    def made(self, key: str) -> dict[str, bytes]:
+        """Return the names and contents of files that the page made; none for others."""
+        with self._lock:
+            group = self._groups.get(key)
+            paths = group.paths if group is not None and group.is_made else []
+            return {path.name: path.read_bytes() for path in paths}
 
     def has(self, key: str) -> bool:
         """Return whether a group is still kept."""
