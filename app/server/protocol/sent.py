@@ -244,6 +244,7 @@ class ToBrowser(TypedDict, total=False):
     """A message to the view, of any of these parts."""
 
     id: int
+    page: str
     actors: dict[str, Part]
     remove: list[str]
     cut: Cut | None
