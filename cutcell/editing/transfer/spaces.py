@@ -38,7 +38,7 @@ def with_skeleton(target: Rig, source: Rig) -> Rig:
     """
     matrix, skeleton = between(target, source), source.skeleton
     if matrix is not None:
-        skeleton = moved_skeleton(skeleton, np.linalg.inv(matrix))
+        skeleton = moved_skeleton(skeleton, np.asarray(np.linalg.inv(matrix), np.float64))
     near = skeleton.deform & (times_outside(skeleton, target.mesh.bounds) <= FAR_OUTSIDE)
     if near.any():  # else they are in different units
         skeleton = replace(skeleton, deform=near)
