@@ -75,6 +75,8 @@ def _step(session: Session, by: int) -> Request | None:
     if document is None:
         return None
     is_open = document.source == session.source
+    if is_open and document.repair == session.state.repair:
+        document = replace(document, repair=session.state.repair)  # with what it makes
     repair = document.repair
     if is_open and (repair is None or repair.after is not None):
         history.go(by, document)
@@ -131,16 +133,19 @@ def choose(session: Session, query: str, first: str = "") -> None:
 
 
 def arrive(session: Session, query: str, first: Request | None = None) -> None:
-    """Open what an address says; `first` is opened where it names no character that exists."""
+    """Open what an address says; see `arrival`."""
+    open_character(session, arrival(session, query, first))
+
+
+def arrival(session: Session, query: str, first: Request | None = None) -> Request:
+    """Return what an address says; `first` where it names no character that exists."""
     source, choices, arrival, problem = _read(session, query)
     first = first or Request(session.source)
-    if not source:
-        request = replace(first, choices=choices, message=problem)
-        if source is None:  # what it says is about the first character
-            request = replace(request, arrival={**first.arrival, **arrival})
-    else:
-        request = Request(source, choices=choices, arrival=arrival, message=problem)
-    open_character(session, request)
+    if source:
+        return Request(source, choices=choices, arrival=arrival, message=problem)
+    if source is None:  # what it says is about the first character
+        first = replace(first, arrival={**first.arrival, **arrival})
+    return replace(first, choices=choices, message=problem)
 
 
 def _read(session: Session, query: str) -> tuple[str | None, dict[str, Any], dict[str, Any], str]:

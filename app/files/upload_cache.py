@@ -8,7 +8,7 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -133,12 +133,13 @@ class UploadCache:
             self._sweep()
         self.storage.sweep()
 
-    def sweep_by_the_clock(self) -> None:
-        """Sweep now and once a minute."""
+    def sweep_by_the_clock(self, *others: Callable[[], None]) -> None:
+        """Sweep now and once a minute, others too."""
 
         def sweep() -> None:
             while True:
-                self.sweep()
+                for one in (self.sweep, *others):
+                    one()
                 time.sleep(SWEEP_SECONDS)
 
         threading.Thread(target=sweep, daemon=True, name="cutcell sweep").start()
@@ -240,6 +241,12 @@ class PageUploads:
             self.cache.list(key)
         for other in self._in_use - {key}:
             self.leave(other)
+
+    def list_again(self, listed: Mapping[str, str]) -> None:
+        """List what the page before a reload listed."""
+        self.listed |= listed
+        for key in listed:
+            self.cache.list(key)
 
     def leave(self, key: str) -> None:
         """Stop using files, unless their character is open."""

@@ -30,17 +30,24 @@ def put_rows(
 ) -> None:
     """Give vertices, shape (k,), weights that sum to one, shape (k, j); report what is refused.
 
-    Rows may be sparse. They go into the chosen layer if it is painted, else into a new one on top,
-    which is chosen then. Rows that do not change are left out.
+    Rows may be sparse. They go into the chosen layer if it is painted, whose mask and opacity limit
+    what is seen of the change, else into a new one on top, which is chosen then. Rows that do not
+    change are left out.
     """
     state = session.state
+    layer, names = stack.painted_layer(state.edits, state.layer), state.rig.skeleton.names
+    is_masked = layer is not None and not (layer.is_opaque and layer.mask.is_all)
     changed, parts = [], []
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
         dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        differs = np.abs(dense - state.weights[which]).max(axis=1, initial=0) > 0.5 / STEPS
-        changed.append(which[differs])
-        parts.append(csr_array(in_steps(dense[differs]) / STEPS))
+        seen = state.weights[which]
+        differs = np.abs(dense - seen).max(axis=1, initial=0) > 0.5 / STEPS
+        which, dense, seen = which[differs], dense[differs], seen[differs]
+        if is_masked and layer is not None:
+            dense = stack.rows_within(layer, names, which, seen, dense, state.max_influences)
+        changed.append(which)
+        parts.append(csr_array(in_steps(dense) / STEPS))
     if not any(map(len, changed)):
         return
 
