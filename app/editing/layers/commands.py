@@ -12,6 +12,7 @@ from cutcell.editing import Edits, FromFile, Layer, Mask, Painted
 from cutcell.editing.layers.contents import Content
 from cutcell.editing.layers.layer import EVERYWHERE
 from cutcell.errors import CutcellError
+from cutcell.rig import Skeleton
 
 from ...document.session import Session
 from ..binding.results import weights_below
@@ -51,7 +52,7 @@ def put_rows(
         return
 
     def change() -> tuple[Edits, int | None]:
-        painting = painted(session, np.concatenate(changed), vstack(parts, format="csr"))
+        painting = painted(state.rig.skeleton, np.concatenate(changed), vstack(parts, format="csr"))
         return stack.painted(state.edits, painting, state.layer, name)
 
     _change(session, change)
@@ -76,9 +77,8 @@ def recompute(
     put_content(session, vertices, lambda: replace(reach, options=options), opacity, name)
 
 
-def painted(session: Session, vertices: Vertices, rows: Any) -> Painted:
+def painted(skeleton: Skeleton, vertices: Vertices, rows: Any) -> Painted:
     """Return rows (k, j) of vertices (k,), in any order, as the content of a layer."""
-    skeleton = session.state.rig.skeleton
     rows = csr_array(rows)
     used = np.unique(rows.indices[rows.data > 0])
     for joint in used:
@@ -146,7 +146,8 @@ def merge_down(session: Session) -> None:
         graph = session.state.binding.graph
         vertices = stack.vertices_of(edits.layers[place - 1 : place + 1], graph, len(rows))
         merged = Layer(
-            painted(session, vertices, rows[vertices]), name=edits.layers[place - 1].name
+            painted(session.state.rig.skeleton, vertices, rows[vertices]),
+            name=edits.layers[place - 1].name,
         )
         below = stack.replaced(edits, place, None)
         return stack.replaced(below, place - 1, merged if len(vertices) else None), place - 1
