@@ -141,19 +141,21 @@ def _binding(
     progress: Progress,
 ) -> Binding:
     few: dict[str, Any] = {"max_influences": max_influences, "threshold": threshold}
-    return with_warnings(rig, layered(rig, _base(bound, influences, few), edits, recomputed), edits)
+    base = _base(bound, influences, few)
+    return with_warnings(rig, layered(rig, base, edits, recomputed, influences.memo), edits)
 
 
 def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
     """Return the binding below all layers, with few influences."""
-    binding, key = bound.binding, tuple(few.values())
-    strongest = influences.strongest.get(key)
-    if strongest is None:
+    binding = bound.binding
+
+    def make() -> Binding:
         strongest = keep_strongest(binding.distances, influences.weights, **few)
-        influences.strongest.clear()
-        influences.strongest[key] = strongest
-    options = {"leaf": binding.method.leaf, **influences.options, **few}
-    return replace(binding, rows=strongest, method=binding.method.with_options(**options))
+        options = {"leaf": binding.method.leaf, **influences.options, **few}
+        return replace(binding, rows=strongest, method=binding.method.with_options(**options))
+
+    base: Binding = influences.memo("base", (bound, *few.values()), make)
+    return base
 
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:
@@ -165,7 +167,7 @@ def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
     """Return the weights (n, j) that other layers give, by the newest results."""
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
     base = _base(state.bound, state.influences, few)
-    return layered(state.rig, base, edits, state.recomputed).weights
+    return layered(state.rig, base, edits, state.recomputed, state.influences.memo).weights
 
 
 def bind_as_chosen(
