@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.joint_colors import colors_of
@@ -105,6 +106,13 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     )
     style, _ = coloring(few, weights_shown(state), rows)
     return {name: style[name] for name in ("colors", "scalars") if name in style}
+
+
+def file_rows(state: State) -> csr_array:
+    """Return the file's weights (n, j) as a sparse matrix."""
+    weights = state.rig.weights
+    rows: csr_array = state.memo("file rows", (weights,), lambda: csr_array(weights))
+    return rows
 
 
 def weights_seen(state: State) -> Any:
