@@ -19,7 +19,7 @@ from ...server.protocol.received import Paint
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
-from ..layers.commands import put_rows
+from ..layers.commands import as_stored, put_rows
 from ..layers.masks import NO_LAYER, put_mask
 from .choices import MAX_RADIUS, MIN_RADIUS, MIN_STRENGTH
 
@@ -176,6 +176,8 @@ class BrushController:
             self._stroke = None
             self._show(vertices, state.weights[vertices])
             return
+        if message.done:  # the scene that follows has nothing else to show
+            rows = as_stored(rows, state.weights[vertices])
         self._show(vertices, rows)
         if message.done:
             self._stroke = None

@@ -37,9 +37,11 @@ def put_rows(
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
         dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        differs = np.abs(dense - state.weights[which]).max(axis=1, initial=0) > 0.5 / STEPS
+        before = state.weights[which]
+        stored = as_stored(dense, before)
+        differs = (stored != before).any(axis=1)
         changed.append(which[differs])
-        parts.append(csr_array(in_steps(dense[differs]) / STEPS))
+        parts.append(csr_array(stored[differs]))
     if not any(map(len, changed)):
         return
 
@@ -79,6 +81,14 @@ def painted(session: Session, vertices: Vertices, rows: Any) -> Painted:
     order = np.argsort(vertices)
     names = [skeleton.names[joint] for joint in used]
     return Painted(vertices[order], names, rows[order][:, used])
+
+
+def as_stored(rows: NDArray[np.float64], before: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return painted rows (k, j) as layers store them: in steps, those before where all is less."""
+    differs = np.abs(rows - before).max(axis=1, initial=0) > 0.5 / STEPS
+    stored = before.copy()
+    stored[differs] = in_steps(rows[differs]) / STEPS
+    return stored
 
 
 def in_steps(rows: NDArray[np.float64]) -> NDArray[np.int64]:
