@@ -71,7 +71,7 @@ def weights_look(
     of_rig = rig.mesh, rig.weights, rig.skeleton.names
     how = state.weight_scale, state.weight_limit, state.asymmetry
     layer = chosen_layer(state) if colors == "mask" else None
-    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how, layer)
+    inputs = (*of_rig, weights, state.rows, colors, which, state.truth, *how, layer)
     style, legend = state.memo(name, inputs, lambda: coloring(state, colors, weights))
     coloured = colors in ("mix", "dominant")
     if coloured:
@@ -89,7 +89,7 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     """
     posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
     whole = weights_shown(state) == "symmetry"  # mirror images change with what is painted
-    if posed or whole or weights_shown(state) == "mask" or weights_seen(state) is not state.weights:
+    if posed or whole or weights_shown(state) == "mask" or weights_seen(state) is not state.rows:
         return {}
     file_weights = state.rig.weights
     few = SimpleNamespace(
@@ -116,9 +116,12 @@ def file_rows(state: State) -> csr_array:
 
 
 def weights_seen(state: State) -> Any:
-    """Return the weights that are coloured; the file's own until others are computed."""
+    """Return the weights that are coloured; the file's own until others are computed.
+
+    Those that are computed are sparse.
+    """
     file_weights = state.rig.weights if state.weights_of == "file" else None
-    return state.weights if file_weights is None else file_weights
+    return state.rows if file_weights is None else file_weights
 
 
 def weights_shown(state: State) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.binding import Binding
-from cutcell.binding.warnings import with_warnings
+from cutcell.binding.warnings import warnings_of
 from cutcell.editing import Computed, Edits
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
@@ -26,6 +26,7 @@ from cutcell.weights.skinning_weights import last_of, weight_steps
 from cutcell.weights.warm_up import is_compiled, warm_up
 
 from ...derive.derived import Derived
+from ...derive.jobs import DESCRIBING
 from ...document.method import GRAPH, WEIGHTS, effective, method_of
 from ...document.state import State
 from .bound import MOST, Bound, Influences, bind_wide, graph_seconds
@@ -142,7 +143,7 @@ def _binding(
 ) -> Binding:
     few: dict[str, Any] = {"max_influences": max_influences, "threshold": threshold}
     base = _base(bound, influences, few)
-    return with_warnings(rig, layered(rig, base, edits, recomputed, influences.memo), edits)
+    return layered(rig, base, edits, recomputed, influences.memo)
 
 
 def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
@@ -184,10 +185,16 @@ def bind_as_chosen(
     return _binding(None, bound, bound.influences, *few, edits, recomputed, rig, progress)
 
 
+def _warnings(
+    binding: Binding, quick: bool, rig: Rig, edits: Edits, progress: Progress
+) -> tuple[str, ...]:
+    return warnings_of(rig, binding, edits)
+
+
 def _explanation_inputs(state: State) -> tuple[Any, ...] | None:
     if state.binding is None or state.vertex is None or not state.explain:
         return None
-    joint = None if state.binding.weights[state.vertex, state.joint] else state.joint
+    joint = None if state.binding.rows[state.vertex, state.joint] else state.joint
     return state.rig, state.binding, state.vertex, state.edits, joint
 
 
@@ -260,6 +267,17 @@ RESULTS = (
         immediate=lambda state: state.quick,
         patient=True,
         failed=go_back,
+    ),
+    Derived(
+        "binding_warnings",
+        lambda state: None if state.binding is None else (state.binding, state.quick),
+        _warnings,
+        more=lambda state: (state.rig, state.edits),
+        after=("binding",),
+        keeps=lambda old, new: old[0].distances is new[0].distances,
+        pause=lambda old, new: old is not None and not new[1],  # between strokes
+        slots=lambda state: DESCRIBING,
+        immediate=lambda state: state.quick,
     ),
     Derived(
         "explanation",

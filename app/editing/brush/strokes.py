@@ -16,6 +16,7 @@ from ...looks.mask import mask_strengths
 from ...looks.weights import painted_colors, weights_shown
 from ...server.protocol import sent
 from ...server.protocol.received import Paint
+from ..compute.selected import rows_at
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
@@ -174,10 +175,10 @@ class BrushController:
         vertices, rows = stroke.painted()
         if message.cancelled:
             self._stroke = None
-            self._show(vertices, state.weights[vertices])
+            self._show(vertices, rows_at(state.rows, vertices))
             return
         if message.done:  # the scene that follows has nothing else to show
-            rows = as_stored(rows, state.weights[vertices])
+            rows = as_stored(rows, rows_at(state.rows, vertices))
         self._show(vertices, rows)
         if message.done:
             self._stroke = None
@@ -209,7 +210,7 @@ class BrushController:
             self._stroke = Stroke(
                 surface,
                 state.rig,
-                state.weights,
+                state.rows,
                 state.joint,
                 brush,
                 mirror=mirror_of(state) if state.brush_mirrored else None,
@@ -264,7 +265,7 @@ class BrushController:
 
     def _take(self, vertices: NDArray, rows: NDArray) -> None:
         session, state = self._session, self._session.state
-        before, edits = state.weights[vertices], state.edits
+        before, edits = rows_at(state.rows, vertices), state.edits
         put_rows(session, vertices, rows)
         if state.edits == edits:
             self._show(vertices, before)

@@ -21,7 +21,7 @@ from cutcell.geometry.laplacian import cotangent_laplacian
 from cutcell.rig import Rig, TriangleMesh
 
 from .reach import SurfaceReach
-from .selected import Selected
+from .selected import Selected, rows_at
 
 BrushMode = Literal["add", "subtract", "replace", "smooth"]
 
@@ -113,14 +113,15 @@ class PaintSurface:
 class Stroke:
     """One stroke of a brush: vertices are painted once, however often it passes.
 
-    See `paint_weights` for the parameters; `weights`, (n, j), are those before the stroke.
+    See `paint_weights` for the parameters; `weights`, (n, j), which may be sparse, are those before
+    the stroke.
     """
 
     def __init__(
         self,
         surface: PaintSurface,
         rig: Rig,
-        weights: NDArray[np.float64],
+        weights: NDArray[np.float64] | csr_array,
         joint: int | str,
         brush: Brush,
         *,
@@ -130,7 +131,7 @@ class Stroke:
         within: NDArray[np.bool_] | None = None,
         locked_weights: NDArray[np.bool_] | None = None,
     ) -> None:
-        self._within = np.ones(len(weights), bool) if within is None else within
+        self._within = np.ones(weights.shape[0], bool) if within is None else within
         self._surface, self._rig, self._weights, self._brush = surface, rig, weights, brush
         self._mirror = mirror
         none = np.empty(0, np.intp)
@@ -192,7 +193,7 @@ class Stroke:
         brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
         covered = self._cover()
         if not len(vertices):
-            return vertices, self._weights[vertices]
+            return vertices, rows_at(self._weights, vertices)
         selected, cover = replace(self._all, vertices=vertices), covered[:, index[vertices]]
         rows = selected.rows
         if brush.mode == "smooth":
@@ -238,7 +239,7 @@ class Stroke:
         rows = laplacian[inner]
         around = np.union1d(rows.indices, inner)
         first = reach.mesh.first
-        start = self._weights[first[around]]
+        start = rows_at(self._weights, first[around])
         used = np.flatnonzero(start.any(axis=0))
         is_inner = cover[around] > 0
         time, area = SPREAD * self._brush.radius**2, areas[inner]

@@ -17,6 +17,7 @@ from ...document.session import Session
 from ..binding.results import weights_below
 from ..compute import stack
 from ..compute.operations import ROWS
+from ..compute.selected import rows_at
 from ..correct.commands import check_alone, correct
 
 STEPS = 10_000
@@ -37,7 +38,7 @@ def put_rows(
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
         dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        before = state.weights[which]
+        before = rows_at(state.rows, which)
         stored = as_stored(dense, before)
         differs = (stored != before).any(axis=1)
         changed.append(which[differs])
