@@ -164,11 +164,26 @@ def weights_below(state: State, place: int) -> NDArray[np.float64]:
     return weights_with(state, replace(state.edits, layers=state.edits.layers[:place]))
 
 
+def newest_rows(state: State) -> Any:
+    """Return the weights (n, j) by the present edits, also before their binding is there.
+
+    They are sparse where they are computed.
+    """
+    if state.bound is None or state.influences is None:
+        return state.rows
+    return _layered(state, state.edits).rows
+
+
 def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
     """Return the weights (n, j) that other layers give, by the newest results."""
+    return _layered(state, edits).weights
+
+
+def _layered(state: State, edits: Edits) -> Binding:
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
+    recomputed = {key: state.recomputed.get(key) for key in recomputed_layers(edits)}
     base = _base(state.bound, state.influences, few)
-    return layered(state.rig, base, edits, state.recomputed, state.influences.memo).weights
+    return layered(state.rig, base, edits, recomputed, state.influences.memo)
 
 
 def bind_as_chosen(

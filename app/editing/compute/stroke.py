@@ -144,6 +144,7 @@ class Stroke:
                 self._all.joint(one)
         sides = 1 if mirror is None or (partner < 0 and brush.mode != "smooth") else 2
         self._distance = np.full((sides, len(surface.reach.points)), np.inf)
+        self._before = self._distance.copy()
 
     def pass_over(self, corners: NDArray[np.integer], shares: NDArray[np.float64]) -> None:
         """Lead the brush over points of the surface.
@@ -188,12 +189,26 @@ class Stroke:
         inside = np.maximum(1 - np.square(self._distance / self._brush.radius), 0)
         return np.asarray(self._brush.strength * np.square(inside))
 
+    def continued(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Return what `painted` returns, of the vertices that changed since the last call."""
+        nearer = (self._distance < self._before).any(axis=0)
+        self._before = self._distance.copy()
+        vertices = self.touched()
+        if self._brush.mode != "smooth":  # which spreads over all that is touched
+            vertices = vertices[nearer[self._surface.reach.index[vertices]]]
+        return vertices, self._weights_of(vertices)
+
     def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
-        brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
+        vertices = self.touched()
+        return vertices, self._weights_of(vertices)
+
+    def _weights_of(self, vertices: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the weights of touched vertices, shape (v, j)."""
+        brush, index = self._brush, self._surface.reach.index
         covered = self._cover()
         if not len(vertices):
-            return vertices, rows_at(self._weights, vertices)
+            return rows_at(self._weights, vertices)
         selected, cover = replace(self._all, vertices=vertices), covered[:, index[vertices]]
         rows = selected.rows
         if brush.mode == "smooth":
@@ -205,7 +220,7 @@ class Stroke:
             changes = zip(self._joints, cover, strict=True)
             moved = rows + sum(self._weight_delta(selected, part, joint) for joint, part in changes)
         named = [] if brush.mode == "smooth" else self._joints
-        return vertices, selected.finished(moved, named)
+        return selected.finished(moved, named)
 
     def check_unlocked(self) -> None:
         """Raise an error if the joint is locked at all vertices that were touched."""

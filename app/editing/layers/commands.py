@@ -14,7 +14,7 @@ from cutcell.editing.layers.layer import EVERYWHERE
 from cutcell.errors import CutcellError
 
 from ...document.session import Session
-from ..binding.results import weights_below
+from ..binding.results import newest_rows, weights_below
 from ..compute import stack
 from ..compute.operations import ROWS
 from ..compute.selected import rows_at
@@ -34,11 +34,11 @@ def put_rows(
     which is chosen then. Rows that do not change are left out.
     """
     state = session.state
-    changed, parts = [], []
+    present, changed, parts = newest_rows(state), [], []
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
         dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        before = rows_at(state.rows, which)
+        before = rows_at(present, which)
         stored = as_stored(dense, before)
         differs = (stored != before).any(axis=1)
         changed.append(which[differs])
@@ -94,6 +94,11 @@ def as_stored(rows: NDArray[np.float64], before: NDArray[np.float64]) -> NDArray
 
 def in_steps(rows: NDArray[np.float64]) -> NDArray[np.int64]:
     """Round rows that sum to one to whole steps that sum to `STEPS` (the largest remainders)."""
+    used = np.flatnonzero(rows.any(axis=0))
+    if len(used) < rows.shape[1]:  # sorting all columns takes long
+        result = np.zeros(rows.shape, np.int64)
+        result[:, used] = in_steps(rows[:, used])
+        return result
     scaled = rows * STEPS
     steps = np.floor(scaled).astype(np.int64)
     order = np.argsort(-(scaled - steps), axis=1, kind="stable")

@@ -42,15 +42,17 @@ class StackedRows:
     def rows(self, layers: Iterable[Layer]) -> csr_array:
         """Return the weights (n, j) with layers over the base, from bottom to top."""
         stack = tuple(layer for layer in layers if layer.is_active)
-        for result in [*self._results, self._base]:
-            if result[0] == stack:
-                break
-        else:
-            result = stack, self._changed(stack)
+        result = self._remembered(stack)
+        if result is None:
+            rows = self._changed(stack)
+            result = self._remembered(stack) or (stack, rows)  # of another thread, meanwhile
         if stack:
             rest = [one for one in self._results if one is not result]
             self._results = [result, *rest][:CACHED]
         return result[1]
+
+    def _remembered(self, stack: Stack) -> tuple[Stack, csr_array] | None:
+        return next((one for one in [*self._results, self._base] if one[0] == stack), None)
 
     def _changed(self, stack: Stack) -> csr_array:
         """Return the rows of another stack than the remembered ones."""
