@@ -236,22 +236,27 @@ class Rig(Summarized):
 
 def check_units(skeleton: Skeleton, bounds: NDArray[np.float64]) -> None:
     """Raise an error if a joint that may carry weight is far from a mesh with bounds (2, 3)."""
+    distance = times_outside(skeleton, bounds)
+    far = np.flatnonzero((distance > FAR_OUTSIDE) & skeleton.deform)
+    if len(far):
+        worst = far[np.argmax(distance[far])]
+        position = ", ".join(f"{x:.4g}" for x in skeleton.joints[worst])
+        raise SkeletonError(
+            f'joint "{skeleton.names[worst]}" at ({position}) lies '
+            f"{distance[worst]:.0f} times the mesh's size away from it "
+            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
+        )
+
+
+def times_outside(skeleton: Skeleton, bounds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far each joint is from a mesh with bounds (2, 3), in diagonals of these, (j,)."""
     joints = skeleton.joints
     unit = np.abs(bounds).max()  # squares of what is measured must not overflow
     with np.errstate(over="ignore"):
         low, high = bounds / unit
         outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
         distance = np.linalg.norm(outside, axis=1)
-    diagonal = np.linalg.norm(high - low)
-    far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & skeleton.deform)
-    if len(far):
-        worst = far[np.argmax(distance[far])]
-        position = ", ".join(f"{x:.4g}" for x in joints[worst])
-        raise SkeletonError(
-            f'joint "{skeleton.names[worst]}" at ({position}) lies '
-            f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
-            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
-        )
+    return np.asarray(distance / np.linalg.norm(high - low))
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

@@ -22,7 +22,7 @@ from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
 from ..layers.commands import as_stored, put_rows
-from ..layers.masks import NO_LAYER, put_mask
+from ..layers.masks import NO_LAYER, put_mask, stroke_strengths
 from .choices import MAX_RADIUS, MIN_RADIUS, MIN_STRENGTH
 
 WITHOUT_JOINT = ("smooth", "select", "mask")
@@ -180,7 +180,7 @@ class BrushController:
             return
         vertices, rows = stroke.painted() if message.done else stroke.continued()
         rows = as_stored(rows, rows_at(self._rows, vertices))  # as they will be in the scene
-        self._show(vertices, rows)
+        self._show(vertices, self._seen(vertices, rows))
         if message.done:
             self._stroke = None
             self._take(vertices, rows)
@@ -253,6 +253,14 @@ class BrushController:
             self._stroke = None
         if message.done and not message.cancelled:
             put_mask(self._session, strengths)
+
+    def _seen(self, vertices: NDArray, rows: NDArray) -> NDArray:
+        """Return rows as they are seen where the layer that they go into has a mask."""
+        strengths = stroke_strengths(self._session.state, vertices)
+        if strengths is None:
+            return rows
+        before = rows_at(self._rows, vertices)
+        return np.asarray(before + strengths[:, None] * (rows - before))
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
         colors = painted_colors(self._session.state, vertices, rows)

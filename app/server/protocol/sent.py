@@ -246,6 +246,7 @@ class ToBrowser(TypedDict, total=False):
     """A message to the view, of any of these parts."""
 
     id: int
+    page: str
     actors: dict[str, Part]
     remove: list[str]
     cut: Cut | None
@@ -269,6 +270,7 @@ class ToBrowser(TypedDict, total=False):
     lasso: Through | None
     clip: Motion | None
     playing: bool
+    time: float
     animation: Wave | None
     address: str
     link: str

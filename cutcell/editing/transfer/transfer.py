@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 
 from ...checks import check_flag, check_integer, check_number
 from ...errors import ParameterError, WeightsError
-from ...rig import Rig, TriangleMesh
+from ...rig import Rig, Skeleton, TriangleMesh
 from ...rig.checks import as_array
 from ...rig.inputs import MeshLike, as_mesh
 from ...runtime.progress import Progress, silent
@@ -22,6 +22,7 @@ from ..locks import joint_index, lock_joints
 from .inpainting import inpaint
 from .matching import match
 from .names import joint_matrix
+from .spaces import between, moved_mesh, with_skeleton
 
 MATCHED, INPAINTED, REFUSED, UNCHANGED = range(4)
 STATES = "matched", "in-painted", "refused", "unchanged"
@@ -119,8 +120,9 @@ def transfer(
     source : Rig
         Has weights. Vertices whose weights are all zero are no matches.
     target : Rig, mesh as `build_graph` takes, or list of them
-        In the source's space and units. A rig with joints keeps them; see `names`. Several, such as
-        levels of detail, are transferred to at once.
+        A mesh is in the source's space. A rig lies where it is in the scene (`Rig.world`), and
+        keeps its joints, if it has any; see `names`. Several, such as levels of detail, are
+        transferred to at once.
     distance : float
         Greatest distance of a match, as part of the diagonal of the source's bounding box.
     angle : float
@@ -184,7 +186,7 @@ def transfer(
     if mask is not None and several:
         raise ParameterError("a mask is for one target; transfer to each of them by itself")
     rigs = [_with_skeleton(one, source) for one in targets]
-    joined, bounds = _joined([rig.mesh for rig in rigs])
+    joined, bounds = _joined([moved_mesh(rig.mesh, between(rig, source)) for rig in rigs])
     matches = match(source, joined, radius, degrees, flipped, progress)
     progress("weights", 0.0)
     rows = inpaint(joined.welded, matches.state == MATCHED, matches.weights)
@@ -212,10 +214,8 @@ def transfer(
 def _with_skeleton(target: Any, source: Rig) -> Rig:
     """Return a target as a rig, with the source's skeleton if it has none."""
     if not isinstance(target, Rig):
-        return Rig(as_mesh(target), source.skeleton)
-    if len(target.skeleton.joints):
-        return target
-    return replace(target, skeleton=source.skeleton, weights=None, weight_sums=None)
+        target = Rig(as_mesh(target), Skeleton([], []), world=source.world)
+    return target if len(target.skeleton.joints) else with_skeleton(target, source)
 
 
 def _joined(meshes: list[TriangleMesh]) -> tuple[TriangleMesh, NDArray[np.intp]]:
