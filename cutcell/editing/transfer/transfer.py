@@ -19,6 +19,7 @@ from ...runtime.progress import Progress, silent
 from ...runtime.repr import Summarized
 from ...weights.prune import prune
 from ..locks import joint_index, lock_joints
+from .attachment import attach
 from .inpainting import inpaint
 from .matching import match
 from .names import joint_matrix
@@ -188,6 +189,8 @@ def transfer(
     matches = match(source, joined, radius, degrees, flipped, progress)
     progress("weights", 0.0)
     rows = inpaint(joined.welded, matches.state == MATCHED, matches.weights)
+    diagonal = float(np.linalg.norm(np.ptp(source.mesh.bounds, axis=0)))
+    rows = attach(joined.welded, rows, matches.distance / diagonal)
     index = joined.welded.index
     results = []
     for rig, begin, end in zip(rigs, bounds[:-1], bounds[1:], strict=True):
