@@ -170,6 +170,32 @@ def panels(visit: Visit) -> None:
     visit.choose("Colour by", "Difference from the file's")
     click_vertex(visit, CHEST)
     take(visit, "weights")
+    visit.page.keyboard.press("Escape")
+    mask(visit)
+
+
+def mask(visit: Visit) -> None:
+    """Take a picture of a layer's mask that fades out over the surface."""
+    where = visit.reach(visit.page.get_by_label("Vertices where"))
+    where.fill("weight of upper_arm.L > 0.3")
+    where.press("Enter")
+    menu(visit, "Add layer", "Smoothed")
+    visit.slide("Smoothing passes", "ArrowRight", 6)
+    menu(visit, "Mask", "Feather")
+    visit.page.keyboard.press("Shift+A")
+    heading = visit.page.get_by_role("heading", name="Selection", exact=True)
+    heading.click()  # its section above takes most of the sidebar
+    visit.settle()
+    heading.evaluate("part => part.scrollIntoView()")
+    take(visit, "mask")
+    visit.button("Delete").click()
+
+
+def menu(visit: Visit, name: str, entry: str) -> None:
+    """Take an entry of a menu button."""
+    visit.button(name).click()
+    visit.page.get_by_role("menuitem", name=entry, exact=True).click()
+    visit.settle()
 
 
 def comparisons(visit: Visit) -> None:
