@@ -213,12 +213,14 @@ def transfer(
 
 
 def _with_skeleton(target: Any, source: Rig) -> Rig:
-    """Return a target as a rig, with the source's skeleton if it has none."""
-    if not isinstance(target, Rig):
-        return Rig(as_mesh(target), source.skeleton)
-    if len(target.skeleton.joints):
+    """Return a target as a rig, with the source's skeleton and no weight if it has none."""
+    if isinstance(target, Rig) and len(target.skeleton.joints):
         return target
-    return replace(target, skeleton=source.skeleton, weights=None, weight_sums=None)
+    mesh = target.mesh if isinstance(target, Rig) else as_mesh(target)
+    skeleton, weights = source.skeleton, np.zeros((len(mesh.vertices), len(source.skeleton.joints)))
+    if not isinstance(target, Rig):
+        return Rig(mesh, skeleton, weights)
+    return replace(target, skeleton=skeleton, weights=weights, weight_sums=None)
 
 
 def _joined(meshes: list[TriangleMesh]) -> tuple[TriangleMesh, NDArray[np.intp]]:
@@ -256,7 +258,7 @@ def _merged(
     if joints is None and not len(locked) and (part == 1).all():
         return weights, np.zeros(len(weights), np.bool_)
     stored = rig.weights
-    if stored is None:
+    if stored is None or not stored.any():
         raise WeightsError(
             f"{rig.name} has no weights of its own to keep; leave out joints, mix, locked and mask"
         )

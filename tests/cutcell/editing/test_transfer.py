@@ -269,6 +269,17 @@ def test_a_mix_and_a_mask_blend_with_the_targets_own_weights(body):
     assert ((masked.state == UNCHANGED) == ~mask).all()
 
 
+def test_a_ring_is_tiny_beside_the_skeleton(body, tmp_path):
+    """Joints without weight may be more than ten times as far away as it is large."""
+    ring = TriangleMesh(sheet(0.21).vertices * [0.02, 1, 0.02] + [0, 0, 0.1], sheet().faces)
+    expected = cutcell.transfer(body, ring).weights
+    assert expected[:, 0].min() == 1
+    target = Rig(ring, Skeleton([], []))
+    assert np.array_equal(cutcell.transfer(body, target).weights, expected)
+    cutcell.save(tmp_path / "ring.glb", cutcell.transfer(body, ring).rig)
+    np.testing.assert_allclose(cutcell.load(tmp_path / "ring.glb").weights, expected, atol=1e-6)
+
+
 def test_skeletons_are_matched_by_names_with_exceptions(body):
     names = ["ns:Joint_2", "Joint.0"]
     skeleton = Skeleton(body.skeleton.joints[[2, 0]], [1, -1], names=names)
