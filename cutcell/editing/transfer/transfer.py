@@ -112,8 +112,9 @@ def transfer(
     A vertex is matched with the closest point of the source within a distance whose normal fits.
     Where several parts of the body are near, as between two fingers, the point wins that is nearest
     through the body to the matches of the vertices around. Vertices without a match are in-painted:
-    their weights minimise the bi-Laplacian energy with the others fixed. Vertices at one place get
-    the same weights, also those of several targets.
+    their weights minimise the bi-Laplacian energy with the others fixed. A connected component that
+    lies on the surface and mostly follows one joint, such as a wig, becomes rigid. Vertices at one
+    place get the same weights, also those of several targets.
 
     Parameters
     ----------
