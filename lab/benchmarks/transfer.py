@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.editing.transfer.inpainting import inpaint
+from cutcell.errors import CutcellError
 from cutcell.rig import Rig, TriangleMesh
 
 from ..metrics import deformation_error
@@ -149,13 +150,17 @@ def components() -> Iterator[tuple[str, list[float]]]:
             is_garment = MIN_VERTICES <= counts[component] <= len(welded.points) / 2
             if number == PARTS or not (is_garment and weighted[worn].all()):
                 continue
-            source = vertices_of(rig, ~worn & weighted)
-            away = closest(source, vertices_of(rig, worn).mesh)[2]
-            if np.median(away) <= 0.05 * diagonal:
-                number += 1
-                result = errors(source, vertices_of(rig, worn))
-                print(name, component, *result, flush=True)
-                yield name, result
+            try:
+                garment, source = vertices_of(rig, worn), vertices_of(rig, ~worn & weighted)
+                if np.median(closest(source, garment.mesh)[2]) > 0.05 * diagonal:
+                    continue
+                result = errors(source, garment)
+            except CutcellError as error:  # a button is too small for its skeleton
+                print(f"{name}, component {component}: {error}", flush=True)
+                continue
+            number += 1
+            print(name, component, *result, flush=True)
+            yield name, result
 
 
 def compared(results: list[tuple[str, list[float]]]) -> Table:
