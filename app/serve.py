@@ -31,6 +31,7 @@ from .server.log import log_to_terminal
 from .server.memory import freeze
 from .server.writes import patch_panel_dispatch
 from .shell.page import page
+from .shell.session.reload import PAGES
 from .widgets.modules import STATIC, head
 
 PORTS_TRIED = 20
@@ -108,7 +109,7 @@ def serve(
     log_to_terminal()
     # Computations in Python yield to the page's own thread earlier than after 5 ms.
     sys.setswitchinterval(0.001)
-    UPLOADS.sweep_by_the_clock()
+    UPLOADS.sweep_by_the_clock(PAGES.sweep)
     threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
     server = begin(path, chosen, address, choices, frames)
     if threading.current_thread() is threading.main_thread():

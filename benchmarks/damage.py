@@ -57,6 +57,8 @@ class Damage:
         """Load the character, undamaged."""
         if self.build is not None:
             return saved_and_loaded(self.build())
+        if self.file.suffix == ".npz":
+            return saved_and_loaded(cutcell.load(self.file))
         return cutcell.load(self.file, accessories=self.accessories)
 
 
@@ -122,6 +124,25 @@ def shifted(rig: Rig, of: Sequence[str], to: Sequence[str]) -> Weights:
     return weights
 
 
+def exchanged(rig: Rig, of: Sequence[str], to: Sequence[str]) -> Weights:
+    """Exchange the weights of two chains of joints, joint by joint."""
+    weights, (one, other) = _copy(rig), (_joints(rig, *names) for names in (of, to))
+    weights[:, [*one, *other]] = weights[:, [*other, *one]]
+    return weights
+
+
+def onto_the_other_side(rig: Rig, side: str, other: str) -> Weights:
+    """Give the weights of all joints of a side, by the end of their names, to their partners."""
+    of = [name for name in rig.skeleton.names if name.endswith(side) and name.startswith("DEF")]
+    return shifted(rig, of, [name.removesuffix(side) + other for name in of])
+
+
+def component_vertices(rig: Rig, number: int) -> NDArray[np.intp]:
+    """Return the vertices of a connected component, numbered from 1, the largest; shape (k,)."""
+    welded = rig.mesh.welded
+    return np.flatnonzero(welded.component[welded.index] == number - 1)
+
+
 def part_vertices(rig: Rig, part: str, side: int = 0) -> NDArray[np.intp]:
     """Return the vertices of a mesh of the file, of all or with x of one sign; shape (k,)."""
     rows = next(one.vertices for one in rig.parts if one.name == part)
@@ -169,6 +190,12 @@ def _joints(rig: Rig, *names: str) -> list[int]:
     return [rig.skeleton.names.index(name) for name in names]
 
 
+def finger(name: str) -> list[str]:
+    """Return the joints of a finger of the hand."""
+    ends = ("metacarpal", "phalanx-proximal", "phalanx-intermediate", "phalanx-distal", "tip")
+    return [f"{name}-finger-{end}" for end in ends]
+
+
 FINGER = tuple(f"index_0{k}.l" for k in (1, 2, 3))
 DAMAGES = {
     "leak": Damage("rigs/quaternius_man_king.glb", lambda rig: leaked(rig, "UpperLeg.L", "Hand.L")),
@@ -196,6 +223,18 @@ DAMAGES = {
         "wild/godot_mannequiny.glb",
         lambda rig: shifted(rig, FINGER, [name.replace("index", "middle") for name in FINGER]),
     ),
+    "coat": Damage(
+        "more/sumerian_maya.npz",
+        lambda rig: rigid(rig, component_vertices(rig, 1), "char:def_l_thigh"),
+    ),
+    "trident": Damage(
+        "more/pumpkin_knight.npz",
+        lambda rig: rigid(rig, component_vertices(rig, 5), "Bip001 R Thigh_050"),
+    ),
+    "fingers": Damage(
+        "rigs/webxr_hand_right.glb", lambda rig: exchanged(rig, *map(finger, ("index", "middle")))
+    ),
+    "other side": Damage("more/dcl_elf.npz", lambda rig: onto_the_other_side(rig, "_R", "_L")),
     "twist": Damage(
         "made-up legs of Auto-Rig Pro", lambda rig: noisy(rig, "thigh_twist.l"), build=legs
     ),

@@ -1,6 +1,6 @@
 """Mend damaged characters on the page, by clicks and keys, and compare with the undamaged weights.
 
-python -m benchmarks.mending [--only leak,noise] [--write]
+python -m benchmarks.mending [--only 'leak;noise'] [--write]
 
 The page begins with the damaged file, and ends with *Export GLB*. A click, a key, a text that is
 typed and an option of a menu count as one action each, and the export as well. Ends with exit
@@ -80,6 +80,39 @@ def _remove_leak(hands: Hands) -> None:
     hands.menu("Change weights", "Fill with amount")
 
 
+def _exchange_by_finding(hands: Hands, title: str) -> None:
+    """Exchange the weights that Check finds at other joints."""
+    hands.panel("Check")
+    hands.press(title)
+    hands.press("Exchange these weights")
+
+
+def _exchange_by_table(hands: Hands, table: str) -> None:
+    """Exchange bones by a table of their names."""
+    hands.panel("Weights")
+    hands.section("Swap and replace bones")
+    hands.type("Replace by table", table)
+
+
+def _transfer(hands: Hands, selection: str) -> None:
+    """Give vertices the weights of the rest of the character."""
+    hands.panel("Weights")
+    hands.section("Selection")
+    hands.type("Vertices where", selection)
+    hands.menu("Change weights", "Transfer from the rest")
+
+
+def _mirror_by_mask(hands: Hands, layer: str) -> None:
+    """Put a layer of the other side over the noise that Check finds, and grow its mask."""
+    hands.panel("Check")
+    hands.press("Noisy weights")
+    hands.press("Select its vertices")
+    hands.panel("Weights")
+    hands.section("Layers")
+    hands.menu("Add layer", layer)
+    hands.menu("Mask", "Grow")
+
+
 REPAIRS: dict[str, Callable[[Hands], None]] = {
     "leak": _remove_leak,
     "lost island": lambda hands: _attach_by_finding(hands, "toeFBXASC046L"),
@@ -87,6 +120,11 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
         hands, "FrontLowerLeg.L", "Vertices of the bone", "Take the right side"
     ),
     "wrong eye": lambda hands: _attach_by_finding(hands, "Head"),
+    "coat": lambda hands: _transfer(hands, "part = 1"),
+    "trident": lambda hands: _attach_by_finding(hands, "Prop1"),
+    "fingers": lambda hands: _exchange_by_finding(hands, "Exchanged joints"),
+    "fingers, by names": lambda hands: _exchange_by_table(hands, "index-* <-> middle-*"),
+    "other side": lambda hands: _exchange_by_finding(hands, "Skin that follows the other side"),
     "cape": lambda hands: _bind_part(hands, ["Knight_Cape"], "Rigid, to one joint", "chest"),
     "blade": lambda hands: _bind_part(
         hands, ["Knife", "upperleg.r"], "With the body it touches"
@@ -100,8 +138,14 @@ REPAIRS: dict[str, Callable[[Hands], None]] = {
     "twist": lambda hands: _change_selection(
         hands, "thigh_twist.l", "Vertices of the bone", "Take the right side"
     ),
+    "twist, by mask": lambda hands: _mirror_by_mask(hands, "Right side on both"),
 }  # fmt: skip
-"""What a person does for each kind of damage."""
+"""What a person does for each kind of damage, which the name begins with."""
+
+
+def damage_of(name: str) -> Damage:
+    """Return the damage that a repair mends."""
+    return DAMAGES[name.partition(",")[0]]
 
 
 @dataclass(frozen=True)
@@ -140,7 +184,7 @@ class Mended:
 
 def mend(browser: Browser, url: str, name: str, folder: Path) -> Mended:
     """Damage a character, mend it on the page, and compare its export with the undamaged one."""
-    damage = DAMAGES[name]
+    damage = damage_of(name)
     rig, path, exported = damage.load(), folder / "damaged.glb", folder / "mended.glb"
     which = write_damaged(damage, rig, path)
     visit = Visit(browser, url + ADDRESS, device_scale_factor=PIXELS)
@@ -201,7 +245,7 @@ def table_of(results: Sequence[Mended]) -> Table:
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mending", description=__doc__)
-    parser.add_argument("--only", default=",".join(DAMAGES), help="kinds of damage")
+    parser.add_argument("--only", default=";".join(REPAIRS), help="kinds of damage")
     parser.add_argument("--write", action="store_true", help="into docs/page/check.md")
     return parser.parse_args(argv)
 
@@ -216,7 +260,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         tempfile.TemporaryDirectory() as folder,
     ):
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        for name in options.only.split(","):
+        for name in options.only.split(";"):
             results.append(mend(browser, url, name, Path(folder)))
             print(results[-1], flush=True)
         browser.close()

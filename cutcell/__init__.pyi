@@ -34,6 +34,7 @@ from .editing import Mask as Mask
 from .editing import Mirrored as Mirrored
 from .editing import Painted as Painted
 from .editing import Remapped as Remapped
+from .editing import SavedPose as SavedPose
 from .editing import Smoothed as Smoothed
 from .editing import edited_rig as edited_rig
 from .editing import refine_weights as refine_weights

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from PIL import Image
@@ -24,6 +25,7 @@ sys.path.insert(0, str(ROOT))
 import cutcell  # noqa: E402
 from cutcell.rig import Rig  # noqa: E402
 from cutcell_assets import demo_path  # noqa: E402
+from cutcell_lab.benchmarks.transfer import part_of  # noqa: E402
 from cutcell_viewers.camera import Camera, framing  # noqa: E402
 from cutcell_viewers.character import body  # noqa: E402
 from cutcell_viewers.description import Description  # noqa: E402
@@ -36,6 +38,7 @@ from cutcell_viewers.scene import render_png  # noqa: E402
 from cutcell_viewers.weights_scene import weights_scene  # noqa: E402
 from scripts.get_chromium import FLAGS, find  # noqa: E402
 from tests.app.browser import Visit, served  # noqa: E402
+from tests.cutcell.cli.files import write_obj  # noqa: E402
 
 PICTURES = ROOT / "docs" / "pictures"
 SIZE = (1080, 810)
@@ -46,6 +49,8 @@ MAX_BYTES = 400_000
 OCTOPUS_ARM = "armA4"
 TOE, CHEST = 10876, 4911
 """Vertices of the walker."""
+CAPE = 1
+"""Connected component of the walker in a cape."""
 
 
 def main() -> None:
@@ -144,6 +149,7 @@ def page() -> None:
         panels(visit)
         comparisons(visit)
         check(visit)
+        clothes(visit)
         lesson(visit)
         visit.close()
         browser.close()
@@ -220,6 +226,17 @@ def check(visit: Visit) -> None:
     visit.dismiss()
     visit.page.get_by_role("button", name="Unreachable vertices").click()
     take(visit, "check")
+
+
+def clothes(visit: Visit) -> None:
+    """Take a picture of a cape that has got the weights of the walker below it."""
+    cape = part_of(cutcell.load(demo_path("biped_cape")), CAPE).mesh
+    open_address(visit, "?rig=biped&panel=weights")
+    with TemporaryDirectory() as folder:
+        path = write_obj(Path(folder, "cape.obj"), cape.vertices.tolist(), cape.faces.tolist())
+        visit.page.get_by_label("Drop a mesh here, or browse").set_input_files(path)
+        visit.page.get_by_text("cape.obj:").wait_for()
+    take(visit, "transfer")
 
 
 def lesson(visit: Visit) -> None:

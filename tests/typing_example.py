@@ -122,6 +122,7 @@ def put_right(rig: cutcell.Rig) -> cutcell.Binding:
             cutcell.Layer(cutcell.Remapped({"Head": "Neck", "Neck": "Head"})),
             cutcell.Layer(cutcell.Locked(["Head"])),
         ],
+        poses={"nod": cutcell.SavedPose({"Head": (30.0, 0.0, 0.0)})},
     )
     again = cutcell.editing.edits.Edits.from_json(edits.to_json())
     assert_type(cutcell.edited_rig(rig, again), cutcell.Rig)

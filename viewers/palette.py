@@ -47,6 +47,9 @@ JOINT_COLORS = (
     (232, 122, 105), (173, 176, 246), (83, 43, 199), (95, 87, 0), (146, 0, 128), (0, 106, 75),
 )  # fmt: skip
 
+# Of saved selections: the first ones are as different as can be from each other and UNREACHED.
+SELECTION_COLORS = tuple(_rgb(*JOINT_COLORS[k]) for k in (1, 0, 3, 5, 9, 8, 2, 15))
+
 # How linear red, green and blue are seen by trichromats and by those who lack the long, middle
 # or short cones (Machado, Oliveira & Fernandes 2009).
 EYES = {

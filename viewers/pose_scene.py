@@ -1,14 +1,19 @@
 """The character in a pose."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 from cutcell.pose import axis_rotation, forward_kinematics
+from cutcell.pose.dual_quaternions import rotation_quaternions
 from cutcell.rig import Rig
 from cutcell.rig.clip import Clip, Derived, Motion
+from cutcell.rig.transforms import composed, relative
 
 from .character import character, pose_in_scene
 from .description import Apart, Description
@@ -17,6 +22,11 @@ from .skin import Skin
 
 SWING_SECONDS = 2.4
 SWING_FRAMES = 48
+HOLD_SECONDS = 0.6
+"""How long a motion through several poses stays in each."""
+MOVE_SECONDS = 0.6
+MOVE_FRAMES = 18
+"""The way from one pose to the next."""
 
 
 def pose_scene(
@@ -93,3 +103,41 @@ def swing(rig: Rig, joint: int, axis: str, degrees: float) -> Clip:
     turns = [joint_turns(rig, {joint: axis_rotation(axis, angle)}) for angle in angles.tolist()]
     times = np.linspace(0, SWING_SECONDS, SWING_FRAMES + 1)
     return Clip("swing", times, [forward_kinematics(rig.skeleton, turn) for turn in turns])
+
+
+def through_poses(rig: Rig, poses: Sequence[NDArray[np.float64]]) -> Clip:
+    """Return a motion from rest through some poses and back, which stays in each for a while.
+
+    Parameters
+    ----------
+    rig : Rig
+    poses : sequence of arrays, shape (j, 4, 4)
+        Skinning matrices in the rig's space.
+    """
+    joints, parents = rig.skeleton.joints, rig.skeleton.parents
+    rest = np.tile(np.eye(4), (len(joints), 1, 1))
+    stops = [_parts(relative(pose, parents), joints) for pose in (rest, *poses, rest)]
+    times, frames, start = [0.0], [rest], 0.0
+    for (turns, linear, places), (next_turns, next_linear, next_places) in pairwise(stops):
+        way = (next_turns * turns.inv()).as_rotvec()  # the shortest
+        for part in np.arange(1, MOVE_FRAMES + 1) / MOVE_FRAMES:
+            turn = (Rotation.from_rotvec(part * way) * turns).as_matrix()
+            local = np.tile(np.eye(4), (len(joints), 1, 1))
+            local[:, :3, :3] = turn @ (linear + part * (next_linear - linear))
+            local[:, :3, 3] = places + part * (next_places - places)
+            local[:, :3, 3] -= np.einsum("jab,jb->ja", local[:, :3, :3], joints)
+            frames.append(composed(local, parents))
+            times.append(start + part * MOVE_SECONDS)
+        start += MOVE_SECONDS + HOLD_SECONDS
+        frames.append(frames[-1])
+        times.append(start)
+    return Clip("poses", times, frames)
+
+
+def _parts(
+    local: NDArray[np.float64], joints: NDArray[np.float64]
+) -> tuple[Rotation, NDArray[np.float64], NDArray[np.float64]]:
+    """Return how transforms relative to parents (j, 4, 4) turn, scale, and move joints (j, 3)."""
+    turns = Rotation.from_quat(rotation_quaternions(local))
+    places = np.einsum("jab,jb->ja", local[:, :3, :3], joints) + local[:, :3, 3]
+    return turns, turns.inv().as_matrix() @ local[:, :3, :3], places

@@ -1,5 +1,6 @@
 """The character coloured by its weights: of one joint, or of all at once."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +12,7 @@ from cutcell.rig import Rig
 from .character import character
 from .description import Description, Legend, Reading
 from .joint_colors import colors_of
-from .palette import UNREACHED, colormap, to_bytes
+from .palette import SELECTION_COLORS, UNREACHED, colormap, to_bytes
 from .short_names import short_names
 
 MIXED = "Each bone's colour, mixed by weight"
@@ -155,6 +156,24 @@ def mask_colors(strengths: NDArray[np.float64], name: str) -> tuple[dict[str, An
     """Colour each vertex by the strength of a layer's mask, (n,)."""
     style = {"scalars": strengths.astype(np.float32), "colormap": "weight", "limits": (0.0, 1.0)}
     return {**style, "reading": Reading("Mask ")}, Legend(f"Mask of {name}", "weight", "0", "1")
+
+
+def selections_colors(
+    selections: Mapping[str, NDArray[np.intp] | None], count: int
+) -> tuple[dict[str, Any], Legend]:
+    """Colour each of `count` vertices by the last selection that it is in; None is all of them."""
+    number = np.full(count, -1)
+    for k, vertices in enumerate(selections.values()):
+        number[slice(None) if vertices is None else vertices] = k
+    table = [SELECTION_COLORS[k % len(SELECTION_COLORS)] for k in range(len(selections))]
+    sizes = [count if vertices is None else len(vertices) for vertices in selections.values()]
+    swatches = [
+        (color, f"{name}: {size:,}")
+        for color, name, size in zip(table, selections, sizes, strict=True)
+    ]
+    reading = Reading("", number + 1, ("in none", *selections))
+    style = {"colors": to_bytes(np.array([*table, UNREACHED]))[number], "reading": reading}
+    return style, Legend("Saved selections", swatches=tuple(swatches))
 
 
 def bone_difference_colors(

@@ -234,6 +234,23 @@ class History:
             del self._documents[self._place]
             self._place -= 1
 
+    def put_away(self) -> History:
+        """Return a history of the same steps, whose documents are put away."""
+        history = History()
+        history._documents = [one.put_away() for one in self._documents]
+        history._place = self._place
+        return history
+
+    def shorten(self) -> bool:
+        """Drop half of the documents, the present one's past last; return whether any went."""
+        half = len(self._documents) // 2
+        if not half:
+            return False
+        start = max(self._place + 1 - half, 0)
+        self._documents = self._documents[start : start + half]
+        self._place -= start
+        return True
+
     def part(self) -> None:
         """Make the next change a separate step, however soon it follows."""
         self._last = (frozenset(), -1e9)

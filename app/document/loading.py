@@ -1,5 +1,6 @@
 """Commands that open a character: of an address, a demo, files, or one of the history."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -74,6 +75,8 @@ def _step(session: Session, by: int) -> Request | None:
     if document is None:
         return None
     is_open = document.source == session.source
+    if is_open and document.repair == session.state.repair:
+        document = replace(document, repair=session.state.repair)  # with what it makes
     repair = document.repair
     if is_open and (repair is None or repair.after is not None):
         history.go(by, document)
@@ -82,10 +85,12 @@ def _step(session: Session, by: int) -> Request | None:
     return Request(document.source, document=document, note=partial(history.go, by))
 
 
-def receiver(session: Session) -> Receiver:
-    """Return what takes files from the browser and loads them."""
+def receiver(
+    session: Session, received: Callable[[Session, Group], None] = load_upload
+) -> Receiver:
+    """Return what takes files from the browser, and loads them unless something else is said."""
     uploads = session.uploads
-    made = Receiver(uploads.cache, uploads, lambda group: load_upload(session, group), session.fail)
+    made = Receiver(uploads.cache, uploads, partial(received, session), session.fail)
     uploads.when_closed(made.drop)
     return made
 
@@ -128,16 +133,19 @@ def choose(session: Session, query: str, first: str = "") -> None:
 
 
 def arrive(session: Session, query: str, first: Request | None = None) -> None:
-    """Open what an address says; `first` is opened where it names no character that exists."""
+    """Open what an address says; see `arrival`."""
+    open_character(session, arrival(session, query, first))
+
+
+def arrival(session: Session, query: str, first: Request | None = None) -> Request:
+    """Return what an address says; `first` where it names no character that exists."""
     source, choices, arrival, problem = _read(session, query)
     first = first or Request(session.source)
-    if not source:
-        request = replace(first, choices=choices, message=problem)
-        if source is None:  # what it says is about the first character
-            request = replace(request, arrival={**first.arrival, **arrival})
-    else:
-        request = Request(source, choices=choices, arrival=arrival, message=problem)
-    open_character(session, request)
+    if source:
+        return Request(source, choices=choices, arrival=arrival, message=problem)
+    if source is None:  # what it says is about the first character
+        first = replace(first, arrival={**first.arrival, **arrival})
+    return replace(first, choices=choices, message=problem)
 
 
 def _read(session: Session, query: str) -> tuple[str | None, dict[str, Any], dict[str, Any], str]:

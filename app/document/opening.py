@@ -65,6 +65,9 @@ class Request:
         Takes the document, and enters it into the history; left out, it is a new step.
     then : callable
         Called when everything is set.
+    instead : callable
+        Takes the character as its file has it, and returns another request if that is to be opened,
+        else None.
     message : str
         What to tell about it.
     """
@@ -80,6 +83,7 @@ class Request:
     camera: Camera | None = None
     note: Callable[[Document], None] | None = None
     then: Callable[[], None] = lambda: None
+    instead: Callable[[Rig], Request | None] = lambda own: None
     message: str = ""
 
 
@@ -145,6 +149,10 @@ class Opening(Task):
     def finish(self, result: tuple[Rig, Repair | None, str]) -> None:
         """Open the character that was read."""
         own, repair, problem = result
+        other = self._request.instead(own)
+        if other is not None:
+            self._session.tasks.add(Opening(self._session, lambda: other))
+            return
         commit(self._session, self._request, own, repair, problem, self._name)
 
     def drop(self) -> None:
@@ -268,7 +276,7 @@ def _arrived(session: Session, rig: Rig, panel: str, arrival: Mapping[str, Any])
     """Return what an address says of a character, as values of the state."""
     state, names = session.state, list(rig.skeleton.names)
     values: dict[str, Any] = {}
-    if -1 <= arrival.get("clip", -2) < len(rig.clips):
+    if -2 <= arrival.get("clip", -3) < len(rig.clips):
         values["clip"] = arrival["clip"]
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         values["vertex"] = arrival["vertex"]

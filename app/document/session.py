@@ -52,6 +52,7 @@ class View(Protocol):
     page_height: float
     time: float
     calm: bool
+    page_before: str
 
     def listen(self, kind: type[M], act: Callable[[M], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""

@@ -35,6 +35,7 @@ PACKAGES = (
     "editing.correct",
     "editing.brush",
     "editing.select",
+    "editing.transfer",
     "features.pose",
     "editing.symmetry",
     "features.compare",

@@ -8,7 +8,7 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -48,6 +48,8 @@ class Group:
         Number of open pages that list it. It is kept for them unless others need the space.
     left : float
         Time of its last use.
+    is_made : bool
+        Whether the page made them: a person does not have them.
     """
 
     key: str
@@ -59,6 +61,7 @@ class Group:
     users: int = 1
     listed: int = 0
     left: float = 0.0
+    is_made: bool = False
 
 
 class UploadCache:
@@ -112,6 +115,13 @@ class UploadCache:
                 group.listed += count
                 group.left = time.monotonic()
 
+    def made(self, key: str) -> dict[str, bytes]:
+        """Return the names and contents of files that the page made; none for others."""
+        with self._lock:
+            group = self._groups.get(key)
+            paths = group.paths if group is not None and group.is_made else []
+            return {path.name: path.read_bytes() for path in paths}
+
     def has(self, key: str) -> bool:
         """Return whether a group is still kept."""
         with self._lock:
@@ -123,12 +133,13 @@ class UploadCache:
             self._sweep()
         self.storage.sweep()
 
-    def sweep_by_the_clock(self) -> None:
-        """Sweep now and once a minute."""
+    def sweep_by_the_clock(self, *others: Callable[[], None]) -> None:
+        """Sweep now and once a minute, others too."""
 
         def sweep() -> None:
             while True:
-                self.sweep()
+                for one in (self.sweep, *others):
+                    one()
                 time.sleep(SWEEP_SECONDS)
 
         threading.Thread(target=sweep, daemon=True, name="cutcell sweep").start()
@@ -230,6 +241,12 @@ class PageUploads:
             self.cache.list(key)
         for other in self._in_use - {key}:
             self.leave(other)
+
+    def list_again(self, listed: Mapping[str, str]) -> None:
+        """List what the page before a reload listed."""
+        self.listed |= listed
+        for key in listed:
+            self.cache.list(key)
 
     def leave(self, key: str) -> None:
         """Stop using files, unless their character is open."""

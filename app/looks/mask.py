@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing import Layer, Painted
+from cutcell.editing import Layer, Mask, Painted
 from cutcell.editing.layers import vertices_of
+from cutcell.rig import TriangleMesh
 
 from ..document.state import State
 
@@ -13,6 +14,11 @@ def chosen_layer(state: State) -> Layer | None:
     """Return the chosen layer."""
     layers = state.edits.layers
     return layers[state.layer] if state.layer is not None and state.layer < len(layers) else None
+
+
+def masked(mask: Mask, mesh: TriangleMesh) -> NDArray[np.intp] | None:
+    """Return the vertices of a mask, shape (k,); None for all."""
+    return vertices_of(mask, lambda: mesh.welded.component[mesh.welded.index])
 
 
 def mask_strengths(state: State) -> NDArray[np.float64] | None:
@@ -24,8 +30,7 @@ def mask_strengths(state: State) -> NDArray[np.float64] | None:
     if layer is None or rig is None:
         return None
     mask, content = layer.mask, layer.content
-    welded = rig.mesh.welded
-    which = vertices_of(mask, lambda: welded.component[welded.index])
+    which = masked(mask, rig.mesh)
     if which is None and isinstance(content, Painted):
         which = content.vertices.astype(np.intp)
     strengths = np.zeros(len(rig.mesh.vertices))

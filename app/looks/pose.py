@@ -1,39 +1,67 @@
 """Pose or motion of the character: as it is chosen, for the view, and commands."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from cutcell.pose import axis_rotation
-from cutcell.rig import Clip
+from cutcell.editing import SavedPose
+from cutcell.pose import axis_rotation, forward_kinematics, pose_at
+from cutcell.rig import Clip, Rig
 from cutcell_viewers.character import pose_in_scene
-from cutcell_viewers.pose_scene import joint_turns, swing
+from cutcell_viewers.pose_scene import joint_turns, swing, through_poses
 
 from ..document.session import Session
 from ..document.state import State
 from ..server.protocol.sent import Motion, Rings
+from ..widgets.text import unique_names
 
 SWING_DEGREES = 50.0
+SWING, POSES = -1, -2
+"""Numbers of the motions that are no clips of the file: a swing, and the saved poses in turn."""
+
+Turn = tuple[float, float, float]
+"""Degrees about x, y and z of the scene."""
 
 
 def pose_of(state: State) -> np.ndarray | None:
     """Return the pose that the sliders make, shape (j, 4, 4); None at rest or in motion."""
-    from cutcell import forward_kinematics
-
     if state.moving or not state.posed:
         return None
-    rotations = {joint: rotation_of(angles) for joint, angles in state.turns.items() if any(angles)}
-    transforms = forward_kinematics(state.rig.skeleton, joint_turns(state.rig, rotations))
-    return pose_in_scene(state.rig, transforms)
+    return pose_in_scene(state.rig, turned(state.rig, state.turns))
 
 
-def rotation_of(angles: tuple[float, float, float]) -> np.ndarray:
+def turned(rig: Rig, turns: Mapping[int, Turn]) -> np.ndarray:
+    """Return the skinning matrices (j, 4, 4), in the rig's space, of joints that are turned."""
+    rotations = {joint: rotation_of(angles) for joint, angles in turns.items() if any(angles)}
+    return forward_kinematics(rig.skeleton, joint_turns(rig, rotations))
+
+
+def clip_names(rig: Rig) -> list[str]:
+    """Return the names of the clips of a rig, of which none comes twice."""
+    return unique_names([clip.name or f"clip {i}" for i, clip in enumerate(rig.clips)])
+
+
+def saved_turns(rig: Rig, pose: SavedPose) -> dict[int, Turn]:
+    """Return the turns of a saved pose by joint, of those joints that the rig has."""
+    names, turns = rig.skeleton.names, pose.turns.items()
+    return {names.index(name): turn for name, turn in turns if name in names and any(turn)}
+
+
+def saved_pose(rig: Rig, pose: SavedPose) -> np.ndarray:
+    """Return the skinning matrices (j, 4, 4) of a saved pose; at rest without its clip."""
+    names = clip_names(rig)
+    if pose.clip in names:
+        return pose_at(rig.clips[names.index(pose.clip)], pose.seconds)
+    return turned(rig, saved_turns(rig, pose))
+
+
+def rotation_of(angles: Turn) -> np.ndarray:
     """Return the rotation of a joint (3, 3) that is turned by degrees about x, y, then z."""
     x, y, z = angles
     return axis_rotation("z", z) @ axis_rotation("y", y) @ axis_rotation("x", x)
 
 
-def angles_of(
-    rotation: np.ndarray, near: tuple[float, float, float] = (0, 0, 0)
-) -> tuple[float, float, float]:
+def angles_of(rotation: np.ndarray, near: Turn = (0, 0, 0)) -> Turn:
     """Return those degrees about x, y and z of a rotation that are nearest to some others."""
     y = np.arcsin(np.clip(-rotation[2, 0], -1, 1))
     if abs(rotation[2, 0]) > 1 - 1e-9:
@@ -53,7 +81,7 @@ def angles_of(
 
 
 def clip_of(state: State) -> Clip | None:
-    """Return the current motion: a clip of the rig, or a swing of the chosen joint."""
+    """Return the current motion: a clip of the rig, the saved poses, or a swing of the joint."""
     if not state.moving or state.rig is None or not state.open_panel.poses:
         return None
     return chosen_clip(state)
@@ -63,7 +91,15 @@ def chosen_clip(state: State) -> Clip:
     """Return the motion that is chosen, whether or not it is on."""
     if 0 <= state.clip < len(state.rig.clips):
         return state.rig.clips[state.clip]
+    if state.clip == POSES:
+        inputs = (state.rig, str(state.edits.poses))  # other edits leave the motion as it is
+        return state.memo("poses", inputs, lambda: _through(state))
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
+
+
+def _through(state: State) -> Clip:
+    poses = state.edits.poses.values()
+    return through_poses(state.rig, [saved_pose(state.rig, pose) for pose in poses])
 
 
 MAX_NUMBERS = 2**22

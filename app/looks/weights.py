@@ -15,6 +15,7 @@ from cutcell_viewers.weights_scene import (
     difference_colors,
     dominant_colors,
     mask_colors,
+    selections_colors,
     symmetry_colors,
     weight_colors,
 )
@@ -23,7 +24,7 @@ from ..document.state import State
 from .character import BODY_OPACITY_WITH_PATH, character
 from .components import seen_apart
 from .explanation import explained_paths
-from .mask import chosen_layer, mask_strengths
+from .mask import chosen_layer, mask_strengths, masked
 from .selection import isolated, outlined, selection_marks
 
 DIFFERENCES = ("difference", "bone_difference")
@@ -70,7 +71,8 @@ def weights_look(
     of_rig = rig.mesh, rig.weights, rig.skeleton.names
     how = state.weight_scale, state.weight_limit, state.asymmetry
     layer = chosen_layer(state) if colors == "mask" else None
-    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how, layer)
+    of_edits = layer, state.edits.selections if colors == "selections" else None
+    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how, *of_edits)
     style, legend = state.memo(name, inputs, lambda: coloring(state, colors, weights))
     coloured = colors in ("mix", "dominant")
     if coloured:
@@ -87,8 +89,9 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     These are "colors" or "scalars", or nothing if the colours do not depend on painted weights.
     """
     posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
-    whole = weights_shown(state) == "symmetry"  # mirror images change with what is painted
-    if posed or whole or weights_shown(state) == "mask" or weights_seen(state) is not state.weights:
+    # Mirror images change with what is painted, masks and selections do not.
+    other = weights_shown(state) in ("symmetry", "mask", "selections")
+    if posed or other or weights_seen(state) is not state.weights:
         return {}
     file_weights = state.rig.weights
     few = SimpleNamespace(
@@ -118,6 +121,8 @@ def weights_shown(state: State) -> str:
     two = state.binding is not None and state.rig.weights is not None
     if state.weights_shown == "mask" and chosen_layer(state) is None:
         return "mix"
+    if state.weights_shown == "selections" and not state.edits.selections:
+        return "mix"
     if state.weights_shown == "symmetry" and state.asymmetry is None:
         return "mix"
     if state.weights_shown in DIFFERENCES and not two:
@@ -143,6 +148,9 @@ def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any],
         assert layer is not None
         assert strengths is not None
         return mask_colors(strengths, layer.title)
+    if colors == "selections":
+        sets = {name: masked(mask, rig.mesh) for name, mask in state.edits.selections.items()}
+        return selections_colors(sets, len(rig.mesh.vertices))
     if colors == "symmetry":
         return symmetry_colors(state.asymmetry.values)
     if colors == "count":

@@ -28,11 +28,16 @@ def copy_command(session: Session) -> None:
 
 
 def _copy(session: Session, recipe: Recipe, what: str, text: str, needs_file: bool) -> None:
-    """Copy a text, and hand over the file of edits that it reads."""
+    """Copy a text, and hand over the files that it reads and that a person does not have."""
     session.view.answer(copy={"text": text, "what": what})
+    files = session.uploads.cache.made(session.source[1:])
     if needs_file:
-        session.view.offer(recipe.layers, stored(session))
-        text = f"The {what.lower()} reads {recipe.layers}, which was downloaded."
+        files[recipe.layers] = stored(session)
+    for name, content in files.items():
+        session.view.offer(name, content)
+    if files:
+        were = "was" if len(files) == 1 else "were"
+        text = f"The {what.lower()} reads {' and '.join(files)}, which {were} downloaded."
         session.state.message = ("info", f"{text} Run it in that folder.")
 
 

@@ -28,6 +28,7 @@ from ..widgets import controls as ui
 from ..widgets.modules import style
 from .favicon import FAVICON
 from .session.begin import begin
+from .session.reload import PAGES, arrive
 from .sidebar import sidebar
 from .status import STATUS_LINE, messages
 from .theme import PAGE_STYLE, THEME
@@ -67,14 +68,15 @@ def page(path: Path | None = None, choices: Mapping[str, Any] = MappingProxyType
         session.state.panel = "pairs"
     view: Any = session.view
     result = layout(session, greeting=path is None and opened is None and not query)
-    document.on_session_destroyed(functools.partial(_close, session))
+    key = PAGES.enter(session)
+    document.on_session_destroyed(functools.partial(_close, session, key))
 
     request = Request("~", paths=[path]) if path is not None else Request(f"demo {first}")
     if path is None and not query and opened is None:
         request = replace(request, arrival={"playing": True})  # in the colours of its weights
     # Nothing is computed until the browser has opened its websocket.
     later = session.work.later
-    view.when_seen(lambda: later(lambda: loading.arrive(session, query, request)))
+    view.when_seen(lambda: later(lambda: arrive(session, query, request)))
     return result
 
 
@@ -93,9 +95,12 @@ def request_query() -> str:
     return urlencode(pairs)
 
 
-def _close(session: Session, context: Any) -> None:
-    session.close()
-    collect_later()
+def _close(session: Session, key: str, context: Any) -> None:
+    try:
+        PAGES.leave(key)
+    finally:
+        session.close()
+        collect_later()
 
 
 def _report(fail: Callable[[Exception], None] | None, error: Exception) -> None:

@@ -54,6 +54,7 @@ class SceneView(JSComponent):
         self.aspect, self.page_height = 4 / 3, PAGE_HEIGHT
         self.time = 0.0
         self.calm = False
+        self.page_before = ""
         self._ready = False
         self._is_visible = False
         self._pictures = False
@@ -133,6 +134,7 @@ class SceneView(JSComponent):
         self.dark = {"1": True, "0": False}.get(str(ready.dark))
         self.calm, self._pictures = ready.calm, ready.pictures
         self.window_width = ready.width
+        self.page_before = ready.page or ""
         self._sent_arrays.clear()
         first = {"lights": LIGHTS, **changes(Description(), self._next, self._sent_arrays)}
         self._send({**first, **self._parts})

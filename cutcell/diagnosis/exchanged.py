@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from ..editing.symmetry import partners_by_name
+from ..rig.names import plain
 from .finding import Finding, found
 from .leaks import pose_of
 from .subject import Subject, bones_distance
@@ -86,9 +87,42 @@ def _permuted(
     np.fill_diagonal(cost, stay)
     target = joints[linear_sum_assignment(cost)[1]]
     moved = np.flatnonzero(target != joints)
-    pairs = {int(joints[k]): int(target[k]) for k in moved}
-    vertices = np.flatnonzero((weights[:, joints[moved]] > 0).any(axis=1))
-    yield from _finding(subject, "exchanged-joints", vertices, joints[moved], pairs)
+    pairs = _with_names(subject, {int(joints[k]): int(target[k]) for k in moved}, without)
+    exchanged = np.array(sorted(pairs), np.intp)
+    vertices = np.flatnonzero((weights[:, exchanged] > 0).any(axis=1))
+    yield from _finding(subject, "exchanged-joints", vertices, exchanged, pairs)
+
+
+def _with_names(
+    subject: Subject, pairs: dict[int, int], without: NDArray[np.bool_]
+) -> dict[int, int]:
+    """Add pairs of joints whose names differ in the same word, as those of two fingers do.
+
+    The skin of both together must be nearer then, though not as much: where no joint has a parent,
+    the bones of some are a guess.
+    """
+    names = [plain(name) for name in subject.rig.skeleton.names]
+    texts = [base.split() for base, _ in names]
+    rules = set()
+    for one, other in pairs.items():
+        if len(texts[one]) == len(texts[other]):
+            pairs_of_words = zip(texts[one], texts[other], strict=True)
+            differ = [both for both in pairs_of_words if both[0] != both[1]]
+            rules |= set(differ) if len(differ) == 1 else set()
+    result, number = dict(pairs), {name: joint for joint, name in enumerate(names)}
+    has_bone = np.isin(np.arange(len(names)), subject.distances.bones.joint) & ~without
+    for joint in np.flatnonzero(has_bone & (subject.weights > VISIBLE_WEIGHT).any(axis=0)).tolist():
+        for word, instead in rules:
+            base = " ".join(instead if text == word else text for text in texts[joint])
+            other = number.get((base, names[joint][1]), joint)
+            if {joint, other} & result.keys() or other == joint or not has_bone[other]:
+                continue
+            both = {joint: other, other: joint}
+            which = (subject.weights[:, [joint, other]] > VISIBLE_WEIGHT).any(axis=1)
+            now, then = _mean_distances(subject, np.flatnonzero(which), both)
+            if then < now:
+                result |= both
+    return result
 
 
 def _finding(
@@ -100,7 +134,8 @@ def _finding(
 ) -> Iterator[Finding]:
     if not len(joints):
         return
-    names = {joint: subject.name(joint) for joint in pairs}
+    names, order = {joint: subject.name(joint) for joint in pairs}, _order(subject, pairs)
+    rows = subject.weights[vertices]
     each = [(a, b) for a, b in pairs.items() if pairs.get(b) != a or a < b]
     yield from found(
         code,
@@ -110,13 +145,20 @@ def _finding(
         pose=pose_of(subject, int(joints[0]), vertices),
         exchanged=tuple(pairs.items()),
         better=_better(subject, vertices, pairs),
+        change=subject.weight_share(vertices, np.abs(rows - rows[:, order]).sum(axis=1) / 2),
     )
+
+
+def _order(subject: Subject, pairs: dict[int, int]) -> NDArray[np.intp]:
+    """Return for each joint the one whose weight it gets, shape (j,)."""
+    order = np.arange(subject.weights.shape[1])
+    order[[*pairs.values()]] = [*pairs]
+    return order
 
 
 def _better(subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int]) -> str:
     """Say by how much an exchange brings weights nearer to the other side's, or else to bones."""
-    mirror, order = subject.mirror, np.arange(subject.weights.shape[1])
-    order[[*pairs.values()]] = [*pairs]
+    mirror, order = subject.mirror, _order(subject, pairs)
     text = " The L1 difference from the other side falls from {:.2f} to {:.2f}."
     if mirror is not None:
         other = mirror.vertex[vertices]
@@ -129,15 +171,23 @@ def _better(subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int])
         )
     if mirror is None or then >= now:
         text = " The mean distance from the bones falls from {:.1%} to {:.1%} of the size."
-        samples = vertices[:: -(-len(vertices) // MOST)]
-        points, weights = subject.mesh.points[subject.welded[samples]], subject.weights[samples]
-        sums = np.zeros(3)
-        for joint, target in pairs.items():
-            weight = weights[:, joint]
-            at = np.flatnonzero(weight)
-            to_joint, to_target = (
-                bones_distance(subject.distances.bones, k, points[at]) for k in (joint, target)
-            )
-            sums += weight[at] @ to_joint, weight[at] @ to_target, weight[at].sum()
-        now, then = (sums[:2] / sums[2]).tolist()
+        now, then = _mean_distances(subject, vertices, pairs)
     return text.format(now, then)
+
+
+def _mean_distances(
+    subject: Subject, vertices: NDArray[np.intp], pairs: dict[int, int]
+) -> tuple[float, float]:
+    """Return the mean distances of the weight of joints from their bones, now and exchanged."""
+    samples = vertices[:: -(-len(vertices) // MOST)]
+    points, weights = subject.mesh.points[subject.welded[samples]], subject.weights[samples]
+    sums = np.zeros(3)
+    for joint, target in pairs.items():
+        weight = weights[:, joint]
+        at = np.flatnonzero(weight)
+        to_joint, to_target = (
+            bones_distance(subject.distances.bones, k, points[at]) for k in (joint, target)
+        )
+        sums += weight[at] @ to_joint, weight[at] @ to_target, weight[at].sum()
+    now, then = (sums[:2] / max(sums[2], 1e-12)).tolist()
+    return now, then

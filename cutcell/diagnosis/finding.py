@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.display import count
+from ..runtime.display import count, share
 from .kinds import FINDING_KINDS, TITLES
 
 SEVERITIES = ("error", "warning", "note")
@@ -70,6 +70,8 @@ class Finding:
         For each of these a joint without weight that lies in the component, -1 for none.
     exchanged : tuple of (int, int)
         Joints, each with the one that should have its weight at these vertices: see `Remapped`.
+    change : float
+        Of findings of weights: the part of all weight, by area, that is at fault, 0 to 1.
     """
 
     code: str
@@ -85,6 +87,7 @@ class Finding:
     parts: tuple[tuple[int, int], ...] = ()
     empty: tuple[int, ...] = ()
     exchanged: tuple[tuple[int, int], ...] = ()
+    change: float = 0.0
 
     @property
     def title(self) -> str:
@@ -107,6 +110,7 @@ class Finding:
             "parts": [list(part) for part in self.parts],
             "empty": list(self.empty),
             "exchanged": [list(pair) for pair in self.exchanged],
+            "change": self.change,
             "pose": None if self.pose is None else asdict(self.pose),
         }
 
@@ -125,6 +129,7 @@ def found(
     severity: str = "",
     details: Sequence[str] = (),
     pose: Pose | None = None,
+    change: float = 0.0,
     **values: Any,
 ) -> Iterator[Finding]:
     """Yield the finding of a code, unless no element is at fault; `values` fill its texts."""
@@ -134,15 +139,20 @@ def found(
     kind, rest = FINDING_KINDS[code], len(details) - MAX_LINES
     lines = (*details[:MAX_LINES], *([f"and {rest} more"] if rest > 0 else []))
     message, advice, repair = (_Texts().format(text, **values) for text in kind[2:])
+    if change:
+        message += f" This is {share(change, 1)} of all weight."
     more = {name: values.get(name, ()) for name in ("parts", "empty", "exchanged")}
     yield Finding(
         code, severity or kind.severity, message, advice, **at, details=lines, repair=repair,
-        pose=pose, **more,
+        pose=pose, change=change, **more,
     )  # fmt: skip
 
 
 def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Sort findings: by severity, then in the order of `TITLES`."""
+    """Sort findings: by severity, then by how much they change, then in the order of `TITLES`."""
     order = list(TITLES)
-    ranked = sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
-    return tuple(ranked)
+
+    def rank(one: Finding) -> tuple[int, float, int]:
+        return SEVERITIES.index(one.severity), -one.change, order.index(one.code)
+
+    return tuple(sorted(findings, key=rank))

@@ -165,6 +165,10 @@ FINDING_KINDS = {
         "Let each follow what it touches, an empty joint in it or the nearest one, unless it is "
         "meant to follow the other.",
     ),
+    "noisy-weights": Kind("Noisy weights", "warning",
+        "{vertices:vertex/differ} abruptly {whom}.",
+        "Take the other side there, smooth the weights, or bind again.",
+    ),
     "stretched-surface": Kind("Surface that stretches", "warning",
         "{part} of the surface stretches or shrinks to more than twice when joints turn by "
         "{degrees:g}°.",

@@ -184,9 +184,11 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
     if not far:
         return
     far.sort(key=lambda one: -len(one[0]))
+    vertices = np.sort(np.concatenate([part for part, _, _ in far]))
     yield from found(
         "far-parts",
-        vertices=np.sort(np.concatenate([part for part, _, _ in far])),
+        vertices=vertices,
+        change=subject.weight_share(vertices),
         joints=np.unique([j for _, j, _ in far]),
         details=[
             f"Part {component[part[0]] + 1} ({count(len(part), 'vertex')}) follows "

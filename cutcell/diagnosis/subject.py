@@ -114,6 +114,13 @@ class Subject:
         """The areas around welded vertices divided among the vertices of the file, shape (n,)."""
         return np.asarray((self.mesh.areas / np.bincount(self.welded))[self.welded])
 
+    def weight_share(
+        self, vertices: NDArray[np.intp], parts: NDArray[np.floating] | float = 1.0
+    ) -> float:
+        """Return parts of the weight of vertices, shapes (k,), as a part of all weight, by area."""
+        area = self.vertex_areas
+        return float((area[vertices] * parts).sum() / area.sum())
+
     @cached_property
     def body(self) -> Body:
         """Classifier of points near the surface: inside or outside."""

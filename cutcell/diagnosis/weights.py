@@ -88,6 +88,7 @@ def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]
             f"{count(n, 'vertex')} far from it"
             for j, n in zip(joints, number.tolist(), strict=True)
         ],
+        change=subject.weight_share(vertex, weights[vertex, joint]),
     )
 
 

@@ -14,6 +14,7 @@ from .layers.contents import (
 )
 from .layers.layer import Layer, Mask
 from .layers.painted import Painted
+from .poses import SavedPose
 from .refine import refine_weights
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Mirrored",
     "Painted",
     "Remapped",
+    "SavedPose",
     "Smoothed",
     "edited_rig",
     "refine_weights",

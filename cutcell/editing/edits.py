@@ -8,17 +8,15 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
-from ..checks import assign, check_choice, check_flag, check_kind, check_number, one_line, shown
+from ..checks import assign, check_choice, check_flag, check_kind, one_line, shown
 from ..errors import FileError, ParameterError
 from ..runtime.writing import write_all
 from .layers.contents import Computed, FromFile, Rename, checked_options
 from .layers.layer import Layer, Mask
 from .layers.packing import joint_names, mapping, naming, with_keys
+from .poses import SavedPose, three
 
 Base = Literal["computed", "file"]
-FARTHEST = 1e30
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ class JointEdit:
         if self.deform is not None:
             check_flag("deform", self.deform)
         if self.position is not None:
-            assign(self, position=_position(self.position))
+            assign(self, position=three("position", self.position))
         check_flag("added", self.added)
         for what in ("parent", "was", "partner"):
             name = getattr(self, what)
@@ -91,6 +89,8 @@ class Edits:
         From bottom to top.
     selections : mapping of str to Mask
         Sets of vertices that a person saved, by their names. They change nothing.
+    poses : mapping of str to SavedPose
+        Poses that a person saved, by their names. They change nothing.
 
     Raises
     ------
@@ -122,6 +122,7 @@ class Edits:
     method: Mapping[str, Any] = field(default_factory=dict)
     layers: Sequence[Layer] = ()
     selections: Mapping[str, Mask] = field(default_factory=dict)
+    poses: Mapping[str, SavedPose] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         joints = mapping("joints", self.joints)
@@ -136,18 +137,15 @@ class Edits:
         check_choice("base", self.base, ("computed", "file"))
         removed = joint_names("removed", self.removed)
         method = checked_options("method", self.method)
-        selections = mapping("selections", self.selections)
-        for name, mask in selections.items():
-            if not isinstance(name, str) or not name.strip():
-                raise ParameterError(f"selections go by names, not by {shown(name)}")
-            check_kind(f'the selection "{one_line(name)}"', mask, Mask)
+        selections = _named("selection", self.selections, Mask)
+        poses = _named("pose", self.poses, SavedPose)
         assign(self, joints=joints, removed=removed, method=method, layers=tuple(self.layers),
-               selections=selections)  # fmt: skip
+               selections=selections, poses=poses)  # fmt: skip
 
     def __bool__(self) -> bool:
         """Return whether there are any edits."""
         changes = self.joints or self.removed or self.layers or self.base == "file"
-        return bool(changes or self.selections)
+        return bool(changes or self.selections or self.poses)
 
     @property
     def partners(self) -> dict[str, str]:
@@ -185,9 +183,10 @@ class Edits:
         return *self.layers[:first], *lowest, *self.layers[first:]
 
     def renamed(self, now: Rename) -> Edits:
-        """Return them for joints of layers that are called otherwise; layers without any go."""
+        """Return them for joints that are called otherwise; layers without any go."""
         layers = [one.renamed(now) for one in self.layers]
-        return replace(self, layers=[one for one in layers if one is not None])
+        poses = {name: one.renamed(now) for name, one in self.poses.items()}
+        return replace(self, layers=[one for one in layers if one is not None], poses=poses)
 
     def to_json(self, indent: int | None = 2) -> str:
         """Return them as a JSON document.
@@ -204,6 +203,7 @@ class Edits:
             "removed": list(self.removed),
             "layers": [layer.to_data() for layer in self.layers],
             "selections": {name: mask.to_data() for name, mask in self.selections.items()},
+            "poses": {name: pose.to_data() for name, pose in self.poses.items()},
         }
         return json.dumps({k: v for k, v in data.items() if v}, indent=indent, ensure_ascii=False)
 
@@ -229,10 +229,11 @@ class Edits:
         if not isinstance(listed, list):
             raise ParameterError(f"layers must be a list, not {shown(listed)}")
         data["layers"] = [Layer.from_data(f"layer {k}", one) for k, one in enumerate(listed, 1)]
-        data["selections"] = {
-            name: Mask.from_data(f'the selection "{one_line(name)}"', value)
-            for name, value in mapping("selections", data.get("selections", {})).items()
-        }
+        for noun, kind in (("selection", Mask), ("pose", SavedPose)):
+            data[f"{noun}s"] = {
+                name: kind.from_data(f'the {noun} "{one_line(name)}"', value)
+                for name, value in mapping(f"{noun}s", data.get(f"{noun}s", {})).items()
+            }
         return cls(**data)
 
     @classmethod
@@ -272,8 +273,11 @@ def _joint(where: str, value: Any) -> JointEdit:
         return JointEdit(**entries)
 
 
-def _position(value: Any) -> tuple[float, ...]:
-    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray) or len(value) != 3:
-        raise ParameterError(f"position must be three numbers, not {shown(value)}")
-    places = zip("xyz", value, strict=True)
-    return tuple(check_number(f"{axis} of position", x, -FARTHEST, FARTHEST) for axis, x in places)
+def _named(noun: str, value: Any, kind: type) -> dict[str, Any]:
+    """Return a copy of a mapping of names that a person gave."""
+    entries = mapping(f"{noun}s", value)
+    for name, one in entries.items():
+        if not isinstance(name, str) or not name.strip():
+            raise ParameterError(f"{noun}s go by names, not by {shown(name)}")
+        check_kind(f'the {noun} "{one_line(name)}"', one, kind)
+    return entries

@@ -107,8 +107,8 @@ class Rig(Summarized):
     Raises
     ------
     SkeletonError
-        A joint that may carry weight, or carries some where weights are given, lies more than ten
-        bounding-box diagonals away from the mesh: skeleton and mesh are in different units.
+        A joint that may carry weight lies more than ten bounding-box diagonals away from
+        the mesh: skeleton and mesh are in different units.
     WeightsError
         Weights of the wrong shape, negative, or not finite.
     """
@@ -180,7 +180,7 @@ class Rig(Summarized):
             assign(self, origin=frozen(origin.astype(np.int32)))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             assign(self, parts=(Part(self.name, slice(0, shape[0])),))
-        check_units(self.skeleton, self.mesh.bounds, self.weights)
+        check_units(self.skeleton, self.mesh.bounds)
 
     @property
     def _summary(self) -> dict[str, Any]:
@@ -234,31 +234,29 @@ class Rig(Summarized):
         return replace(self, skeleton=skeleton, clips=clips)
 
 
-def check_units(
-    skeleton: Skeleton, bounds: NDArray[np.float64], weights: NDArray[np.float64] | None = None
-) -> None:
-    """Raise an error if a joint that may carry weight is far from a mesh with bounds (2, 3).
+def check_units(skeleton: Skeleton, bounds: NDArray[np.float64]) -> None:
+    """Raise an error if a joint that may carry weight is far from a mesh with bounds (2, 3)."""
+    distance = times_outside(skeleton, bounds)
+    far = np.flatnonzero((distance > FAR_OUTSIDE) & skeleton.deform)
+    if len(far):
+        worst = far[np.argmax(distance[far])]
+        position = ", ".join(f"{x:.4g}" for x in skeleton.joints[worst])
+        raise SkeletonError(
+            f'joint "{skeleton.names[worst]}" at ({position}) lies '
+            f"{distance[worst]:.0f} times the mesh's size away from it "
+            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
+        )
 
-    Where weights (n, j) are given, only joints with weight count: a ring has a whole skeleton.
-    """
+
+def times_outside(skeleton: Skeleton, bounds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far each joint is from a mesh with bounds (2, 3), in diagonals of these, (j,)."""
     joints = skeleton.joints
     unit = np.abs(bounds).max()  # squares of what is measured must not overflow
     with np.errstate(over="ignore"):
         low, high = bounds / unit
         outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
         distance = np.linalg.norm(outside, axis=1)
-    diagonal = np.linalg.norm(high - low)
-    far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & skeleton.deform)
-    if weights is not None:
-        far = far[weights[:, far].any(axis=0)]
-    if len(far):
-        worst = far[np.argmax(distance[far])]
-        position = ", ".join(f"{x:.4g}" for x in joints[worst])
-        raise SkeletonError(
-            f'joint "{skeleton.names[worst]}" at ({position}) lies '
-            f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
-            f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
-        )
+    return np.asarray(distance / np.linalg.norm(high - low))
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

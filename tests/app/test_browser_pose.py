@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
 import cutcell
@@ -12,6 +13,7 @@ from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns
 from tests.app.browser import SCALE, changed
 from tests.app.small import RESOLUTION
+from tests.app.test_browser_accessibility import faults
 from tests.viewers.textures import png, seen, squares, wall
 
 pytestmark = pytest.mark.slow
@@ -192,6 +194,49 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
     rest(visit)
     np.testing.assert_array_equal(visit.points(), still)
     assert visit.page.locator(".transport").is_hidden()
+
+
+def test_poses_are_saved_shown_and_filmed_by_keys(visit, tmp_path):
+    page, rows = visit.page, visit.page.get_by_role("list", name="Poses and clips")
+    expect(rows.get_by_role("button")).to_have_count(1)
+    assert re.fullmatch(r"Wave\s*[\d.]+ → [\d.]+", rows.inner_text())
+    visit.slide("About Z", "PageUp", 4)
+    visit.settle()
+    bent = visit.points()
+    box = page.get_by_role("textbox", name="Save pose as")
+    box.fill("bent")
+    box.press("Enter")
+    expect(rows.get_by_role("button")).to_have_count(2)
+    visit.settle()
+    rest(visit)
+    wave, pose = (rows.get_by_role("button", name=name) for name in ("Wave", "bent"))
+    wave.press("Enter")
+    expect(wave).to_have_attribute("aria-current", "true")
+    visit.settle()
+    assert visit.report()["time"] > 0, "the clip stands where it stretches most"
+    assert not visit.report()["playing"]
+    pose.press("Enter")
+    expect(pose).to_have_attribute("aria-current", "true")
+    visit.settle()
+    np.testing.assert_allclose(visit.points(), bent, atol=1e-6)
+    visit.button("Worst vertex").press("Enter")
+    expect(page.get_by_role("button", name="Why these weights?")).to_be_visible()
+    page.keyboard.press("Escape")
+    assert faults(visit) == []
+    box = page.get_by_role("textbox", name="Rename pose")
+    box.fill("elbow")
+    box.press("Enter")
+    expect(rows.get_by_role("button", name="elbow")).to_be_visible()
+    visit.choose("Motion", "Saved poses")
+    visit.button("Side by side").click()
+    visit.button("Image, video").click()
+    with page.expect_download() as download:
+        page.get_by_role("menuitem", name="Motion (GIF)").click()
+    download.value.save_as(tmp_path / "film.gif")
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames > 20
+    visit.button("Delete pose").press("Enter")
+    expect(rows.get_by_role("button")).to_have_count(1)
 
 
 def test_a_film_and_the_numbers_come_out(visit, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 from cutcell import Edits, FromFile, Layer, Mask, Painted
 from cutcell_app.editing.brush.strokes import select
 from cutcell_app.editing.correct.commands import correct
+from cutcell_app.editing.layers.commands import set_layer
 from cutcell_app.editing.layers.controls import LAYERS
 from cutcell_app.editing.layers.masks import MASKS
 from cutcell_app.features.scenes import resolve
@@ -147,3 +148,37 @@ def test_the_brush_paints_and_erases_a_mask(painter, loop):
     np.testing.assert_array_equal(mask_strengths(state), strengths)
     state.brush_mode = "add"
     assert state.weights_shown == "bone"
+
+
+@pytest.mark.parametrize("strength", [1.0, 0.5, 0.0])
+def test_strokes_go_into_a_painted_layer_as_far_as_its_mask_lets_them(painter, loop, strength):
+    state = painter.state
+    whole = state.weights.copy()
+    stroke(painter, MIDDLE)
+    settled(painter, loop)
+    delta = state.weights - whole
+    painted = state.edits.layers[0].content.vertices
+    mask = Mask()
+    if strength < 1:
+        rest = np.setdiff1d(np.arange(len(whole)), painted)
+        inside = painted if strength else painted[:0]
+        vertices = np.union1d(rest, inside)
+        mask = Mask(vertices=vertices, strengths=np.where(np.isin(vertices, painted), 0.5, 1.0))
+    set_layer(painter, 0, mask=mask)
+    settled(painter, loop)
+    first, edits = state.weights, state.edits
+    np.testing.assert_allclose(first - whole, strength * delta, atol=1e-9)
+    stroke(painter, MIDDLE)
+    shown = painter.answers[-1]["painted"]
+    settled(painter, loop)
+    assert len(state.edits.layers) == 1
+    assert state.layer == 0
+    assert state.edits.layers[0].mask == mask
+    assert (np.abs(state.weights - first).max() > 0.01) == (strength > 0)
+    after = state.weights[shown["vertices"], state.joint]
+    np.testing.assert_allclose(shown["scalars"], after, atol=2e-4)
+    check_bound_as_by_core(painter, arm_rig())
+    keys.act(painter, "undo")
+    settled(painter, loop)
+    assert state.edits == edits
+    np.testing.assert_array_equal(state.weights, first)

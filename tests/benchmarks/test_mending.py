@@ -107,7 +107,13 @@ def test_a_comparison_counts_errors_and_other_vertices(rig, tmp_path, monkeypatc
 
 
 def test_each_damage_has_a_repair():
-    assert mending.REPAIRS.keys() == DAMAGES.keys()
+    assert {id(mending.damage_of(name)) for name in mending.REPAIRS} == {*map(id, DAMAGES.values())}
+
+
+@pytest.mark.nightly
+def test_made_up_damage_is_mended_on_the_page(capsys):
+    mending.main(["--only", "twist;twist, by mask"])  # exits where it is not
+    assert "legs of Auto-Rig Pro" in capsys.readouterr().out
 
 
 @pytest.mark.nightly

@@ -126,7 +126,8 @@ def _binding_inputs(state: State) -> tuple[Any, ...] | None:
     few = state.max_influences, state.threshold
     shown_with = _shown_with(state.rig)
     recomputed = {key: state.recomputed.get(key) for key in recomputed_layers(state.edits)}
-    return shown_with, state.bound, state.influences, *few, state.edits, recomputed, state.rig
+    edits = replace(state.edits, selections={}, poses={})  # what is saved changes no weights
+    return shown_with, state.bound, state.influences, *few, edits, recomputed, state.rig
 
 
 def _binding(

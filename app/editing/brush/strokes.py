@@ -20,7 +20,7 @@ from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
 from ..layers.commands import put_rows
-from ..layers.masks import NO_LAYER, put_mask
+from ..layers.masks import NO_LAYER, put_mask, stroke_strengths
 from .choices import MAX_RADIUS, MIN_RADIUS, MIN_STRENGTH
 
 WITHOUT_JOINT = ("smooth", "select", "mask")
@@ -176,7 +176,7 @@ class BrushController:
             self._stroke = None
             self._show(vertices, state.weights[vertices])
             return
-        self._show(vertices, rows)
+        self._show(vertices, self._seen(vertices, rows))
         if message.done:
             self._stroke = None
             self._take(vertices, rows)
@@ -249,6 +249,14 @@ class BrushController:
             self._stroke = None
         if message.done and not message.cancelled:
             put_mask(self._session, strengths)
+
+    def _seen(self, vertices: NDArray, rows: NDArray) -> NDArray:
+        """Return rows as they are seen where the layer that they go into has a mask."""
+        strengths = stroke_strengths(self._session.state, vertices)
+        if strengths is None:
+            return rows
+        before = self._session.state.weights[vertices]
+        return np.asarray(before + strengths[:, None] * (rows - before))
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
         colors = painted_colors(self._session.state, vertices, rows)

@@ -17,7 +17,9 @@ from cutcell.checks import check_choice, check_integer, check_number
 from cutcell.editing.layers.contents import MAX_STEPS
 from cutcell.editing.selections.neighbours import SMOOTHING_STEP, Neighbours
 from cutcell.editing.symmetry import Mirror, reflected
+from cutcell.editing.transfer import transfer
 from cutcell.errors import ParameterError, WeightsError
+from cutcell.rig import TriangleMesh
 
 from .selected import Selected
 
@@ -117,6 +119,22 @@ def smoothed(selected: Selected, neighbours: Neighbours, passes: int) -> csr_arr
             rows[at] += SMOOTHING_STEP * (_means(to_moving @ rows, rows[at]) - rows[at])
         columns.append(csr_array(rows[at[welded], :-1]))
     return csr_array(hstack(columns, format="csr"))
+
+
+def transferred(selected: Selected) -> csr_array:
+    """Return the weights that a transfer from all other vertices gives, sparse."""
+    rig, faces = selected.rig, selected.rig.mesh.faces
+    chosen = np.zeros(len(selected.weights), np.bool_)
+    chosen[selected.vertices] = True
+    within = faces[chosen[faces].all(axis=1)]
+    if chosen.all() or not len(within):
+        raise ParameterError(
+            "no weights can be transferred; select some faces, but not all of the mesh"
+        )
+    source = rig.with_weights(np.where(chosen[:, None], 0.0, selected.weights))
+    target = TriangleMesh(rig.mesh.vertices[chosen], (np.cumsum(chosen) - 1)[within])
+    rows = transfer(source, target, max_influences=selected.max_influences).weights
+    return limited(selected, csr_array(rows))
 
 
 def prune(

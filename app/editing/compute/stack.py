@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell.editing import (
     Attached,
@@ -27,6 +28,7 @@ from cutcell.editing.layers.contents import Content
 from cutcell.editing.locks import locked_joints
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig, Skeleton
+from cutcell.weights.prune import prune
 
 
 def put_layer(edits: Edits, layer: Layer) -> tuple[Edits, int]:
@@ -87,19 +89,49 @@ def changed(edits: Edits, content: Callable[[Content], Content | None]) -> Edits
 # Vertices that are painted
 
 
+def painted_layer(edits: Edits, place: int | None) -> Layer | None:
+    """Return the layer at a place if strokes go into it: it is painted, on, and replaces."""
+    layer = edits.layers[place] if place is not None and 0 <= place < len(edits.layers) else None
+    if layer is None or not isinstance(layer.content, Painted):
+        return None
+    return layer if layer.is_active and layer.mode == "replace" else None
+
+
+def rows_within(
+    layer: Layer,
+    names: Sequence[str],
+    vertices: NDArray[np.intp],
+    seen: NDArray[np.float64],
+    rows: NDArray[np.float64],
+    max_influences: int | None,
+) -> NDArray[np.float64]:
+    """Return rows for a painted layer that change what is seen as far as its mask lets them.
+
+    Its rows at vertices (k,) change by as much as those that are seen would without a mask, from
+    `seen` to `rows`, (k, j) for the joints' names: so a stroke is multiplied by the mask.
+    """
+    content = layer.content
+    assert isinstance(content, Painted)
+    at = np.searchsorted(content.vertices, vertices).clip(max=len(content.vertices) - 1)
+    again = np.flatnonzero(content.vertices[at] == vertices)
+    changed = rows[again] - seen[again]
+    changed[:, [names.index(name) for name in content.joints]] += content.rows[at[again]].toarray()
+    changed = csr_array(np.maximum(changed, 0))
+    result = rows.copy()
+    result[again] = prune(changed, max_influences, 0.0, np.arange(len(names))).toarray()
+    return result
+
+
 def painted(edits: Edits, painting: Painted, place: int | None, name: str) -> tuple[Edits, int]:
     """Return edits with painted rows, and the place of their layer.
 
-    They go into the layer at a place if it is painted and opaque, else into a new one on top.
+    They go into the `painted_layer` at a place, or else into a new one on top.
     """
-    layers = edits.layers
-    if place is not None and 0 <= place < len(layers):
-        layer = layers[place]
-        is_whole = layer.on and layer.is_opaque and layer.mask.is_all
-        if isinstance(layer.content, Painted) and is_whole:
-            merged = replace(layer, content=layer.content.merged(painting))
-            return replaced(edits, place, merged), place
-    return put_layer(edits, Layer(painting, name=name))
+    layer = painted_layer(edits, place)
+    if layer is None or place is None:
+        return put_layer(edits, Layer(painting, name=name))
+    assert isinstance(layer.content, Painted)
+    return replaced(edits, place, replace(layer, content=layer.content.merged(painting))), place
 
 
 def painted_vertices(edits: Edits) -> NDArray[np.int32]:

@@ -12,6 +12,7 @@ from cutcell.editing import Edits, FromFile, Layer, Mask, Painted
 from cutcell.editing.layers.contents import Content
 from cutcell.editing.layers.layer import EVERYWHERE
 from cutcell.errors import CutcellError
+from cutcell.rig import Skeleton
 
 from ...document.session import Session
 from ..binding.results import weights_below
@@ -29,22 +30,29 @@ def put_rows(
 ) -> None:
     """Give vertices, shape (k,), weights that sum to one, shape (k, j); report what is refused.
 
-    Rows may be sparse. They go into the chosen layer if it is painted, else into a new one on top,
-    which is chosen then. Rows that do not change are left out.
+    Rows may be sparse. They go into the chosen layer if it is painted, whose mask and opacity limit
+    what is seen of the change, else into a new one on top, which is chosen then. Rows that do not
+    change are left out.
     """
     state = session.state
+    layer, names = stack.painted_layer(state.edits, state.layer), state.rig.skeleton.names
+    is_masked = layer is not None and not (layer.is_opaque and layer.mask.is_all)
     changed, parts = [], []
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
         dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        differs = np.abs(dense - state.weights[which]).max(axis=1, initial=0) > 0.5 / STEPS
-        changed.append(which[differs])
-        parts.append(csr_array(in_steps(dense[differs]) / STEPS))
+        seen = state.weights[which]
+        differs = np.abs(dense - seen).max(axis=1, initial=0) > 0.5 / STEPS
+        which, dense, seen = which[differs], dense[differs], seen[differs]
+        if is_masked and layer is not None:
+            dense = stack.rows_within(layer, names, which, seen, dense, state.max_influences)
+        changed.append(which)
+        parts.append(csr_array(in_steps(dense) / STEPS))
     if not any(map(len, changed)):
         return
 
     def change() -> tuple[Edits, int | None]:
-        painting = painted(session, np.concatenate(changed), vstack(parts, format="csr"))
+        painting = painted(state.rig.skeleton, np.concatenate(changed), vstack(parts, format="csr"))
         return stack.painted(state.edits, painting, state.layer, name)
 
     _change(session, change)
@@ -69,9 +77,8 @@ def recompute(
     put_content(session, vertices, lambda: replace(reach, options=options), opacity, name)
 
 
-def painted(session: Session, vertices: Vertices, rows: Any) -> Painted:
+def painted(skeleton: Skeleton, vertices: Vertices, rows: Any) -> Painted:
     """Return rows (k, j) of vertices (k,), in any order, as the content of a layer."""
-    skeleton = session.state.rig.skeleton
     rows = csr_array(rows)
     used = np.unique(rows.indices[rows.data > 0])
     for joint in used:
@@ -139,7 +146,8 @@ def merge_down(session: Session) -> None:
         graph = session.state.binding.graph
         vertices = stack.vertices_of(edits.layers[place - 1 : place + 1], graph, len(rows))
         merged = Layer(
-            painted(session, vertices, rows[vertices]), name=edits.layers[place - 1].name
+            painted(session.state.rig.skeleton, vertices, rows[vertices]),
+            name=edits.layers[place - 1].name,
         )
         below = stack.replaced(edits, place, None)
         return stack.replaced(below, place - 1, merged if len(vertices) else None), place - 1

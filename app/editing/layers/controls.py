@@ -20,7 +20,8 @@ from . import commands
 from .masks import MASKS
 
 ABOUT = (
-    "Layers change the weights below them. Strokes go into the chosen painted layer, or a new one."
+    "Layers change the weights below them. Strokes go into the chosen painted layer, as far as its "
+    "mask lets them, or a new one."
 )
 NEW = "A new layer covers the selection, or else everything."
 LATE = ("binding",)

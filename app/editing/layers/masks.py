@@ -12,8 +12,10 @@ from cutcell.errors import ParameterError
 
 from ...document.selection import selected
 from ...document.session import Session
+from ...document.state import State
 from ...looks.mask import chosen_layer, mask_strengths
 from ...looks.selection import neighbours_of
+from ..compute import stack
 from .commands import set_layer
 
 STEPS = 1000
@@ -36,6 +38,18 @@ def put_mask(session: Session, strengths: Strengths) -> None:
     session.state.weights_shown = "mask"  # first: undo takes the mask back before the colours
     session.history.part()
     set_layer(session, place, mask=mask)
+
+
+def stroke_strengths(state: State, vertices: NDArray[np.intp]) -> Strengths | None:
+    """Return how much of a stroke is seen at vertices, shapes (k,); None for all of it.
+
+    Where strokes go into the chosen layer, its mask and opacity limit what is seen.
+    """
+    layer = stack.painted_layer(state.edits, state.layer)
+    if layer is None or (layer.is_opaque and layer.mask.is_all):
+        return None
+    strengths = None if layer.mask.is_all else mask_strengths(state)
+    return layer.opacity * (np.ones(len(vertices)) if strengths is None else strengths[vertices])
 
 
 def _changes(change: Callable[[Session, Strengths], Strengths]) -> Callable[[Session], None]:

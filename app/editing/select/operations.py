@@ -240,6 +240,7 @@ OPERATIONS: dict[str, Callable[[Session], None]] = {
     "Take the left side": take_side("left"),
     "Take the right side": take_side("right"),
     "Swap left and right": by_mirror("Swap left and right", swapped),
+    "Transfer from the rest": lambda session: change_all(session, "Transfer", ops.transferred),
     "Copy weights": copy,
     "Paste by nearest point": paste,
     "Paste in vertex order": partial(paste, by="order"),

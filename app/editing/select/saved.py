@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from cutcell.editing import Mask
-from cutcell.editing.layers import vertices_of
 from cutcell.errors import ParameterError
 
 from ...document.selection import selected, selected_vertices
 from ...document.session import Session
 from ...document.state import State
+from ...looks.mask import masked
 from ...widgets import controls as ui
 from ..brush.strokes import select
 from ..correct.commands import correct
@@ -37,9 +37,8 @@ def take(session: Session, name: str) -> None:
     state = session.state
     state.saved = name if name in state.edits.selections else ""
     if state.saved:
-        mask, welded = state.edits.selections[name], state.rig.mesh.welded
         chosen = np.zeros(len(state.rig.mesh.vertices), np.bool_)
-        which = vertices_of(mask, lambda: welded.component[welded.index])
+        which = masked(state.edits.selections[name], state.rig.mesh)
         chosen[slice(None) if which is None else which] = True
         select(session, chosen)
 

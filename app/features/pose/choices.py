@@ -8,6 +8,7 @@ import param
 
 from ...document.common import MOMENT
 from ...document.state import Panel
+from ...looks.pose import SWING
 
 PANEL = Panel(
     "Pose",
@@ -31,7 +32,9 @@ class Choices(param.Parameterized):
     )
     turns = param.Dict({}, doc="Degrees about x, y and z, a triple for each turned joint.")
     clip = param.Integer(
-        -1, doc="Which clip of the rig to play; -1 swings the joint.", precedence=MOMENT
+        -1,
+        doc="Which clip of the rig to play; -1 swings the joint, -2 goes through the saved poses.",
+        precedence=MOMENT,
     )
     moving = param.Boolean(
         False, doc="Whether a motion, rather than `turns`, poses.", precedence=MOMENT
@@ -60,6 +63,11 @@ class Choices(param.Parameterized):
         None, doc="Root mean square, greatest and nearly greatest mm over the motion, or None."
     )
 
+    pose_name = param.String("", doc="The saved pose that was chosen or saved last.")
+    stretches: Any = param.Parameter(
+        {}, doc="The `Worst` edge of each saved pose and clip, by (weights, kind) and by its key."
+    )
+
     @property
     def posed(self) -> bool:
         """Whether the character is anywhere but at rest on the panels that pose it."""
@@ -70,4 +78,5 @@ class Choices(param.Parameterized):
         """Names the motion that is on, by what makes it another one; empty without one."""
         if not self.moving:
             return ""
-        return f"clip {self.clip}" if self.clip >= 0 else f"swing {self.joint} {self.axis}"
+        is_swing = self.clip == SWING
+        return f"swing {self.joint} {self.axis}" if is_swing else f"clip {self.clip}"

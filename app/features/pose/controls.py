@@ -13,15 +13,16 @@ from ...document.state import State
 from ...editing.brush.controls import BRUSH
 from ...editing.select.controls import SELECTION
 from ...looks.controls import REST
-from ...looks.pose import play
+from ...looks.pose import SWING, play
 from ...widgets import controls as ui
 from ...widgets.rows import Rows
 from . import results as actions
+from .pose_list import SAVED
+from .poses import motions
 from .scene import error_of, has_rival
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
-SWING = "Swing the bone"
 FEW_NOTES = 3
 """Largest number of faults of materials that are listed one by one."""
 SAME_WEIGHTS = "Same weights. Joints bulge slightly instead of collapsing."
@@ -51,17 +52,6 @@ def _angle(axis: int) -> Any:
         margin=0, track=False,
         sx={"& .MuiSlider-thumb": {"bgcolor": color}, "& .MuiSlider-root": {"color": color}},
     )  # fmt: skip
-
-
-def _motions(state: State) -> list[str]:
-    """Return the names of the clips, and of the swing, which is number -1."""
-    clips = state.rig.clips if state.rig is not None else ()
-    return [*(clip.name or f"clip {i}" for i, clip in enumerate(clips)), SWING]
-
-
-def _choose_motion(session: Session, index: int) -> None:
-    clips = session.state.rig.clips if session.state.rig is not None else ()
-    session.state.clip = index if index < len(clips) else -1
 
 
 def _colours(state: State) -> dict[str, Any]:
@@ -135,11 +125,19 @@ CONTROLS = ui.column(
     ),
     ui.section(
         "",
-        ui.pick("Motion", _motions, lambda s: s.clip, _choose_motion),
-        ui.choice("axis", visible=lambda s: s.clip < 0),
+        ui.pick(
+            "Motion",
+            lambda s: [*motions(s).values()],
+            lambda s: [*motions(s)].index(s.clip if s.clip in motions(s) else SWING),
+            lambda session, place: session.state.param.update(
+                clip=[*motions(session.state)][place]
+            ),
+        ),
+        ui.choice("axis", visible=lambda s: s.clip == SWING),
         ui.play_button(play, variant="contained"),
         top=2,
     ),
+    SAVED,
     ui.section(
         "Blending",
         ui.choice("blending"),

@@ -10,11 +10,12 @@ from cutcell_viewers.pose_scene import clip_in_scene
 from ...derive.derived import Derived
 from ...document.session import Session
 from ...document.state import State
-from ...looks.pose import angles_of, clip_of, clip_part, rotation_of
+from ...looks.pose import SWING, angles_of, clip_of, clip_part, rotation_of
 from ...server.protocol.received import Play, Turn
 from ...server.protocol.sent import Motion
 from .errors import motion_error, scene_error
 from .materials import MATERIALS
+from .poses import STRETCHES
 from .scene import has_rival
 
 TURN_DEGREES = 30.0
@@ -31,7 +32,8 @@ def watch(session: Session) -> None:
 def motion_part(state: State) -> Motion | None:
     """Return the motion that is on, or None; raise a `CutcellError` if it cannot be played."""
     clip = clip_of(state)
-    inputs = (state.rig, clip is None, state.motion)
+    # A swing is a new clip each time: it is named by the joint and the axis.
+    inputs = (state.rig, state.motion, clip if state.clip != SWING else clip is None)
     part: Motion | None = state.memo("clip", inputs, lambda: clip_part(state, clip))
     return part
 
@@ -93,8 +95,7 @@ def _motion(state: State) -> tuple[Any, ...] | None:
     both, clip = _both(state), clip_of(state)
     if both is None or clip is None:
         return None
-    # A swing is a new clip each time: it is named by the joint and the axis.
-    return *both, state.blending, state.motion, None if state.clip < 0 else clip
+    return *both, state.blending, state.motion, None if state.clip == SWING else clip
 
 
 RESULTS = (
@@ -116,4 +117,5 @@ RESULTS = (
         more=lambda state: (clip_of(state),),
     ),
     MATERIALS,
+    STRETCHES,
 )

@@ -31,6 +31,7 @@ class Choices(choices_of(WEIGHTS, max_influences=MOST)):  # type: ignore[misc]
             "bone_difference",
             "symmetry",
             "mask",
+            "selections",
         ],
     )
     weights_of: param.Selector[str] = param.Selector(

@@ -14,6 +14,7 @@ from ...editing.layers.controls import LAYERS
 from ...editing.select.bones import BONES
 from ...editing.select.controls import SELECTION, WEIGHT_SCALE
 from ...editing.symmetry.controls import PAIRS, SYMMETRY
+from ...editing.transfer.controls import TRANSFER
 from ...widgets import controls as ui
 
 SHOWN = {
@@ -24,6 +25,7 @@ SHOWN = {
     "Symmetry": "symmetry",
     "Mask of the layer": "mask",
 }
+SELECTIONS = {"Saved selections": "selections"}
 DIFFERENCE = {
     "Difference from the file's": "difference",
     "Difference of the selected bone": "bone_difference",
@@ -32,7 +34,11 @@ DIFFERENCE = {
 
 def _colours(state: State) -> dict[str, Any]:
     """Return the choices of colours, and the chosen one."""
-    options = {**SHOWN, **(DIFFERENCE if ui.has_weights(state) else {})}
+    options = {
+        **SHOWN,
+        **(SELECTIONS if state.edits.selections else {}),
+        **(DIFFERENCE if ui.has_weights(state) else {}),
+    }
     field = state.weights_shown
     return {"options": options, "value": field if field in options.values() else "mix"}
 
@@ -86,5 +92,6 @@ CONTROLS = ui.column(
         [ui.option(name) for name in WEIGHTS if name not in ("falloff", "alpha")],
     ),
     COMPONENTS,
+    TRANSFER,
     EDITS,
 )

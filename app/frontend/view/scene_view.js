@@ -68,7 +68,7 @@ export class SceneView {
     this.points = new PointHandles(overlay, this.renderer, hears)
     this.transport = new Transport(overlay, {
       play: (on) => model.send_msg({type: "play", on}),
-      seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
+      seek: (time) => { this.seek(time); this.tellTime() },
     })
     this.rendered = new Rendered(overlay, model)
     this.addressBar = new AddressBar(window)
@@ -95,6 +95,7 @@ export class SceneView {
     if (message.copy) { copy(this.overlay, message.copy.text, message.copy.what) }
     if (message.frame) { this.rendered.receive(message.frame) }
     if (message.idle) { this.idle?.(message.idle) }
+    if ("time" in message) { this.seek(message.time) }
     if (message.painted) { this.brush.painted(message.painted, renderer.actors.get("body")) }
     if (!message.id) { return }
     for (const name of message.remove || []) {
@@ -177,6 +178,12 @@ export class SceneView {
     this.renderer.setPose(this.currentPose, this.blending === "dual")
     if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
     this.posed += 1
+  }
+
+  seek(time) {
+    this.time = time
+    this.applyPose()
+    this.changed()
   }
 
   play(playing) {

@@ -7,7 +7,7 @@ import {probe} from "./probe.js"
 import {loadVtk} from "../engine/renderer.js"
 import {SceneView} from "./scene_view.js"
 import {skipLink} from "../page/skip_link.js"
-import {recall} from "../common/storage.js"
+import {pageBefore, recall, rememberPage} from "../common/storage.js"
 import {Surroundings} from "../page/surroundings.js"
 
 // Tells the server what it must know of this browser before it sends anything.
@@ -16,7 +16,8 @@ function tellReady(model, pictures) {
   const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
   const dark = recall("cutcell dark") ?? system
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches
-  model.send_msg({type: "ready", width: window.innerWidth, dark, calm, pictures})
+  const {innerWidth: width} = window
+  model.send_msg({type: "ready", width, page: pageBefore, dark, calm, pictures})
 }
 
 /** @param {{model: Model}} widget */
@@ -51,6 +52,7 @@ export function render({model}) {
     return window.__cutcell = Object.assign(made, probe(made))
   }
   model.on("msg:custom", (message) => {
+    if (message.page) { rememberPage(message.page) }
     if (!message.camera || !camera) { view?.receive(message); return }
     view?.receive({...message, camera: {...message.camera, now: camera}})
     camera = null

@@ -21,9 +21,10 @@ class Message:
 
 
 class Ready(Message):
-    """The view is there."""
+    """The view is there; `page` is the key of the page before a reload."""
 
     width: int = 0
+    page: str | None = None
     dark: str | None = None
     calm: bool = False
     pictures: bool = False

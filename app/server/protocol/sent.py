@@ -244,6 +244,7 @@ class ToBrowser(TypedDict, total=False):
     """A message to the view, of any of these parts."""
 
     id: int
+    page: str
     actors: dict[str, Part]
     remove: list[str]
     cut: Cut | None
@@ -267,6 +268,7 @@ class ToBrowser(TypedDict, total=False):
     lasso: Through | None
     clip: Motion | None
     playing: bool
+    time: float
     animation: Wave | None
     address: str
     link: str

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, dia_array
 from scipy.spatial import cKDTree
 
+from ...geometry.welded import WeldedMesh
 from ...graph import CutCellGraph
 from ...rig import TriangleMesh
 
@@ -35,12 +36,17 @@ class Neighbours:
     @classmethod
     def of(cls, mesh: TriangleMesh, within: float = 0.0) -> Neighbours:
         """Link welded vertices along the edges of a mesh, and others within a distance."""
-        welded = mesh.welded
-        pairs = welded.edges.edges
-        if within:
-            tree = cKDTree(mesh.vertices[welded.first])
-            pairs = np.concatenate([pairs, tree.query_pairs(within, output_type="ndarray")])
-        return cls(welded.index, _symmetric(pairs, len(welded.points)))
+        if not within:
+            return cls.along(mesh.welded)
+        tree = cKDTree(mesh.vertices[mesh.welded.first])
+        return cls.along(mesh.welded, tree.query_pairs(within, output_type="ndarray"))
+
+    @classmethod
+    def along(cls, welded: WeldedMesh, pairs: NDArray[np.integer] | None = None) -> Neighbours:
+        """Link welded vertices along the edges of a mesh, and further pairs, shape (p, 2)."""
+        edges = welded.edges.edges
+        links = edges if pairs is None else np.concatenate([edges, pairs])
+        return cls(welded.index, _symmetric(links, len(welded.points)))
 
     @classmethod
     def through(cls, graph: CutCellGraph) -> Neighbours:

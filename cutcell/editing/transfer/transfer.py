@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 
 from ...checks import check_flag, check_integer, check_number
 from ...errors import ParameterError, WeightsError
-from ...rig import Rig, TriangleMesh
+from ...rig import Rig, Skeleton, TriangleMesh
 from ...rig.checks import as_array
 from ...rig.inputs import MeshLike, as_mesh
 from ...runtime.progress import Progress, silent
@@ -23,6 +23,7 @@ from .attachment import attach
 from .inpainting import inpaint
 from .matching import match
 from .names import joint_matrix
+from .spaces import between, moved_mesh, with_skeleton
 
 MATCHED, INPAINTED, REFUSED, UNCHANGED = range(4)
 STATES = "matched", "in-painted", "refused", "unchanged"
@@ -121,8 +122,9 @@ def transfer(
     source : Rig
         Has weights. Vertices whose weights are all zero are no matches.
     target : Rig, mesh as `build_graph` takes, or list of them
-        In the source's space and units. A rig with joints keeps them; see `names`. Several, such as
-        levels of detail, are transferred to at once.
+        A mesh is in the source's space. A rig lies where it is in the scene (`Rig.world`), and
+        keeps its joints, if it has any; see `names`. Several, such as levels of detail, are
+        transferred to at once.
     distance : float
         Greatest distance of a match, as part of the diagonal of the source's bounding box.
     angle : float
@@ -186,7 +188,7 @@ def transfer(
     if mask is not None and several:
         raise ParameterError("a mask is for one target; transfer to each of them by itself")
     rigs = [_with_skeleton(one, source) for one in targets]
-    joined, bounds = _joined([rig.mesh for rig in rigs])
+    joined, bounds = _joined([moved_mesh(rig.mesh, between(rig, source)) for rig in rigs])
     matches = match(source, joined, radius, degrees, flipped, progress)
     progress("weights", 0.0)
     rows = inpaint(joined.welded, matches.state == MATCHED, matches.weights)
@@ -214,14 +216,10 @@ def transfer(
 
 
 def _with_skeleton(target: Any, source: Rig) -> Rig:
-    """Return a target as a rig, with the source's skeleton and no weight if it has none."""
-    if isinstance(target, Rig) and len(target.skeleton.joints):
-        return target
-    mesh = target.mesh if isinstance(target, Rig) else as_mesh(target)
-    skeleton, weights = source.skeleton, np.zeros((len(mesh.vertices), len(source.skeleton.joints)))
+    """Return a target as a rig, with the source's skeleton if it has none."""
     if not isinstance(target, Rig):
-        return Rig(mesh, skeleton, weights)
-    return replace(target, skeleton=skeleton, weights=weights, weight_sums=None)
+        target = Rig(as_mesh(target), Skeleton([], []), world=source.world)
+    return target if len(target.skeleton.joints) else with_skeleton(target, source)
 
 
 def _joined(meshes: list[TriangleMesh]) -> tuple[TriangleMesh, NDArray[np.intp]]:
@@ -259,7 +257,7 @@ def _merged(
     if joints is None and not len(locked) and (part == 1).all():
         return weights, np.zeros(len(weights), np.bool_)
     stored = rig.weights
-    if stored is None or not stored.any():
+    if stored is None:
         raise WeightsError(
             f"{rig.name} has no weights of its own to keep; leave out joints, mix, locked and mask"
         )

@@ -14,6 +14,7 @@ from cutcell_app.editing.compute import operations as ops
 from cutcell_app.editing.compute.selected import Selected
 from tests.app.small import small_rig
 from tests.bars import bar, grid_box, legs
+from tests.cutcell.diagnosis.worm import worm
 
 JOINTS = 5
 
@@ -317,6 +318,23 @@ def test_pasting_takes_the_nearest_or_the_order():
         paste(selected, points[:3], rows[:3], "order")
     with pytest.raises(ParameterError, match="nothing was copied"):
         paste(selected, points[:0], rows[:0])
+
+
+def test_a_coat_gets_the_weights_of_the_body_below():
+    body = worm()
+    points, faces, count = body.mesh.vertices, body.mesh.faces, len(body.mesh.vertices)
+    coat = points + 0.01 * body.mesh.welded.normals[body.mesh.welded.index]
+    mesh = TriangleMesh(np.vstack([points, coat]), np.vstack([faces, faces + count]))
+    wrong = np.eye(len(body.skeleton.names))[np.zeros(count, int)]
+    rig = Rig(mesh, body.skeleton, np.vstack([body.weights, wrong]))
+    chosen = np.arange(count, 2 * count)
+    rows = ops.transferred(Selected(rig, rig.weights, chosen, max_influences=4)).toarray()
+    assert np.abs(rows - body.weights).sum(axis=1).max() < 0.1
+    locked = Selected(rig, rig.weights, chosen, [0], max_influences=4)
+    np.testing.assert_array_equal(ops.transferred(locked).toarray(), wrong)
+    for none in (chosen[:1], np.arange(2 * count)):
+        with pytest.raises(ParameterError, match="select some faces"):
+            ops.transferred(Selected(rig, rig.weights, none))
 
 
 def test_what_cannot_be_is_an_error_that_names_it():

@@ -47,4 +47,5 @@ def test_every_kind_of_finding_has_a_damage_or_is_known_to_have_none():
     elsewhere |= {"exchanged-joints", "other-side"}  # see test_exchanged.py
     elsewhere |= {"far-parts", "hollow-body"}  # see test_far_parts.py and test_omitted.py
     suspicious = {"stray-weights", "weight-islands", "asymmetric-weights", *SWEEP}  # test_leaks.py
+    suspicious |= {"noisy-weights"}  # see test_noise.py
     assert tried | elsewhere | suspicious == set(TITLES)

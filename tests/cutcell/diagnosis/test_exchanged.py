@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
 import cutcell
 from cutcell import Edits, Layer, Mask, Remapped
@@ -66,6 +67,40 @@ def test_a_side_that_follows_the_other_is_named_and_mended(sides, distances):
     assert error.sum() < 0.05 * before.sum()
     now, then = map(float, re.findall(r"from ([\d.]+)% to ([\d.]+)%", found[0].message)[0])
     assert then < now / 2
+
+
+def fingers():
+    """Return two fingers that begin beside each other and part further on."""
+    box = trimesh.creation.box([1, 0.1, 0.1]).subdivide_to_size(0.06)
+    points, faces, joints, weights = [], [], [[-0.2, 0, 0]], []
+    for side, length in ((1, 1.0), (-1, 0.8)):  # they are no mirror images
+        along = box.vertices[:, 0] + 0.5
+        bend = side * (0.04 + 1.2 * np.maximum(along - 0.4, 0))
+        center = np.stack([length * along, bend, 0 * along], axis=1)
+        points.append(center + box.vertices * [0, 1, 1])
+        faces.append(np.array(box.faces) + len(along) * len(faces))
+        at = np.array([0.02, 0.4, 0.7])
+        joints += [[length * x, side * (0.04 + 1.2 * max(x - 0.4, 0)), 0] for x in at]
+        weights.append(np.eye(3)[(along[:, None] > at).sum(axis=1).clip(1, 3) - 1])
+    rows = np.zeros((2 * len(along), 7))
+    rows[: len(along), 1:4], rows[len(along) :, 4:] = weights
+    names = ["hand", *(f"{name}_{k}" for name in ("index", "middle") for k in (1, 2, 3))]
+    skeleton = cutcell.Skeleton(joints, [-1, 0, 1, 2, 0, 4, 5], names)
+    mesh = cutcell.TriangleMesh(np.vstack(points), np.vstack(faces))
+    return cutcell.Rig(mesh, skeleton, weights=rows)
+
+
+def test_joints_that_lie_together_are_exchanged_with_the_others_of_their_names():
+    rig = fingers()
+    assert findings(rig) == []
+    order = [0, 4, 5, 6, 1, 2, 3]
+    damaged = rig.with_weights(rig.weights[:, order])
+    (finding,) = findings(damaged)
+    assert finding.joints.tolist() == [1, 2, 3, 4, 5, 6]
+    np.testing.assert_array_equal(mended(damaged, finding), rig.weights)
+    other = replace(rig.skeleton, names=["hand", *"abcdef"])
+    (finding,) = findings(replace(damaged, skeleton=other))
+    assert finding.joints.tolist() == [2, 3, 5, 6]
 
 
 def test_joints_without_skin_or_bones_do_not_disturb():

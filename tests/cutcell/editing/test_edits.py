@@ -21,6 +21,7 @@ from cutcell import (
     Painted,
     ParameterError,
     Remapped,
+    SavedPose,
     Smoothed,
 )
 from cutcell.errors import FileError
@@ -48,6 +49,11 @@ ALL = Edits(
     method={"falloff": "paper", "alpha": 0.3},
     layers=LAYERS,
     selections={"left hand": Mask(vertices=MANY), "cap": Mask(part=3)},
+    poses={
+        "nod": SavedPose({"head": (30, 0, -2.5)}),
+        "step": SavedPose(clip="walk", seconds=0.4),
+        "rest": SavedPose(),
+    },
 )
 
 
@@ -62,6 +68,7 @@ def test_json_and_back_is_the_same(tmp_path):
     assert not Edits.from_json(Edits().to_json())
     assert Edits(base="file")
     assert Edits(selections={"all": Mask()})
+    assert Edits(poses={"rest": SavedPose()})
     assert Edits(selections={"one": Mask(part=1)}) != Edits(selections={"one": Mask(part=2)})
     assert LAYERS[3].content.weights == {"head": 0.75, "tail": 0.25}
 
@@ -102,6 +109,16 @@ def test_each_part_of_a_layer_counts_for_equality():
         ('{"selections": {"": {}}}', "selections go by names"),
         ('{"selections": {"a": {"vertexes": 1}}}', 'the selection "a" has no .vertexes.'),
         ('{"selections": {"a": {"vertices": [2, 1]}}}', 'the selection "a": .* must ascend'),
+        ('{"poses": {"": {}}}', "poses go by names"),
+        ('{"poses": {"a": {"turn": {}}}}', 'the pose "a" has no .turn.; did you mean "turns"'),
+        ('{"poses": {"a": {"turns": {"b": [1, 2]}}}}', 'the pose "a": "b" must be three numbers'),
+        ('{"poses": {"a": {"turns": {"b": [1, 2, NaN]}}}}', 'z of "b" must be a number'),
+        ('{"poses": {"a": {"clip": 1}}}', "clip must be the name of a clip"),
+        ('{"poses": {"a": {"clip": "b", "seconds": -1}}}', "seconds must be a number"),
+        (
+            '{"poses": {"a": {"clip": "b", "turns": {"c": [1, 2, 3]}}}}',
+            'the pose "a": a pose has turns or a clip, not both',
+        ),
         ('{"layers": {}}', "layers must be a list"),
         ('{"layers": [{"kind": "glued"}]}', 'layer 1 must have a "kind": one of computed'),
         ('{"layers": [{"kind": "filled"}]}', "layer 1 needs weights"),
@@ -194,3 +211,9 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
     (tmp_path / "bad.json").write_text('{"joints": 1}')
     with pytest.raises(ParameterError, match=r"bad\.json: joints must be"):
         Edits.load(tmp_path / "bad.json")
+
+
+def test_poses_follow_joints_that_are_renamed_or_removed():
+    renamed = ALL.renamed(lambda name: {"head": "skull"}.get(name, name))
+    assert renamed.poses == {**ALL.poses, "nod": SavedPose({"skull": (30, 0, -2.5)})}
+    assert ALL.renamed(lambda name: None).poses["nod"] == SavedPose()
