@@ -82,7 +82,7 @@ export class Actor {
   repaint(painted) {
     this.colours.repaint(painted)
     const {vertices, readings} = painted
-    if (vertices && readings && this.reading) { replace(this.reading.values, 1, vertices, readings) }
+    if (vertices && readings) { replace(this.reading.values, 1, vertices, readings) }
     this.reskin(painted)
   }
 
