@@ -82,7 +82,8 @@ export class Actor {
   repaint(painted) {
     this.colours.repaint(painted)
     const {vertices, readings} = painted
-    if (vertices && readings) { replace(this.reading.values, 1, vertices, readings) }
+    const values = this.reading?.values
+    if (values && vertices && readings) { replace(values, 1, vertices, readings) }
     this.reskin(painted)
   }
 

@@ -245,7 +245,12 @@ export class SceneView {
     }
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (!moving) { this.rendered.rest(() => this.frame) }
-    if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
+    if (this.renderer.rough && !moving) { this.calmDown() }
+  }
+
+  // During a stroke the next colours would wait for the picture in full.
+  calmDown() {
+    this.calming = setTimeout(() => this.brush.held ? this.calmDown() : this.draw(true), CALM)
   }
 
   // The camera and the tiles of what is seen.
