@@ -154,7 +154,7 @@ class Pages:
         return key
 
     def leave(self, key: str) -> None:
-        """Store the handover of a page that is about to end, with its newest steps if it is large."""
+        """Store the handover of a page that is about to end; the newest steps if it is large."""
         with self._lock:
             session = self._open.pop(key, None)
             handover = None if session is None else handover_of(session)
