@@ -6,7 +6,7 @@ import {Materials} from "./materials.js"
 import {shaderSwaps} from "./shade.js"
 import {skinArrays, skinned, withRows} from "./skin.js"
 import {Strokes} from "./strokes.js"
-import {boundsOf, withCounts} from "../common/shape.js"
+import {boundsOf, replace, withCounts} from "../common/shape.js"
 import {TriangleTree} from "./triangle_tree.js"
 import {along} from "../common/vectors.js"
 import {beforeDrawing, changeShaders, pushBack} from "./vtk_private.js"
@@ -52,6 +52,7 @@ export class Actor {
     if (part.scalars) {
       this.colours.setValues(plain(part.scalars), plain(part.table), part.limits)
     }
+    if (part.repainted) { this.repaint(part.repainted) }
     if (part.materials) {
       this.materials = this.materials ?? new Materials(this.renderer.context)
       this.materials.set(part.materials)
@@ -80,6 +81,9 @@ export class Actor {
   /** Gives some vertices other weights than the server's last. @param {Painted} painted */
   repaint(painted) {
     this.colours.repaint(painted)
+    const {vertices, readings} = painted
+    const values = this.reading?.values
+    if (values && vertices && readings) { replace(values, 1, vertices, readings) }
     this.reskin(painted)
   }
 

@@ -19,6 +19,7 @@ from ...runtime.progress import Progress, silent
 from ...runtime.repr import Summarized
 from ...weights.prune import prune
 from ..locks import joint_index, lock_joints
+from .attachment import attach
 from .inpainting import inpaint
 from .matching import match
 from .names import joint_matrix
@@ -112,8 +113,9 @@ def transfer(
     A vertex is matched with the closest point of the source within a distance whose normal fits.
     Where several parts of the body are near, as between two fingers, the point wins that is nearest
     through the body to the matches of the vertices around. Vertices without a match are in-painted:
-    their weights minimise the bi-Laplacian energy with the others fixed. Vertices at one place get
-    the same weights, also those of several targets.
+    their weights minimise the bi-Laplacian energy with the others fixed. A connected component that
+    lies on the surface and mostly follows one joint, such as a wig, becomes rigid. Vertices at one
+    place get the same weights, also those of several targets.
 
     Parameters
     ----------
@@ -190,6 +192,8 @@ def transfer(
     matches = match(source, joined, radius, degrees, flipped, progress)
     progress("weights", 0.0)
     rows = inpaint(joined.welded, matches.state == MATCHED, matches.weights)
+    diagonal = float(np.linalg.norm(np.ptp(source.mesh.bounds, axis=0)))
+    rows = attach(joined.welded, rows, matches.distance / diagonal)
     index = joined.welded.index
     results = []
     for rig, begin, end in zip(rigs, bounds[:-1], bounds[1:], strict=True):

@@ -157,6 +157,19 @@ def test_normals_count_where_fabric_is_not_on_the_skin(body):
     assert states["flipped"][0] == MATCHED
 
 
+@pytest.mark.parametrize(
+    ("end", "above", "rigid"), [(0.9, 0.02, 1.0), (0.5, 0.02, 0.0), (0.9, 0.001, 0.0)]
+)
+def test_what_mostly_lies_on_one_joint_follows_it_alone(body, end, above, rigid):
+    """A wig on the shoulders; not a sheet over two joints, nor a level of detail."""
+    first = np.clip((end + 0.05 - body.mesh.vertices[:, 0]) / 0.05, 0, 1)
+    rig = body.with_weights(np.stack([first, 1 - first, 0 * first], axis=1))
+    wig = sheet(0.2 + above, 21)
+    weights = cutcell.transfer(rig, wig).weights
+    others = weights[wig.vertices[:, 0] > 0.96]
+    np.testing.assert_allclose(others, np.tile([rigid, 1 - rigid, 0], (len(others), 1)), atol=1e-3)
+
+
 def test_a_small_part_does_without_the_joints_that_are_far_from_it(body):
     middle = np.array([0.05, 0.2, 0.1])
     button = TriangleMesh((body.mesh.vertices - [0.5, 0.1, 0.1]) * 0.01 + middle, body.mesh.faces)
@@ -235,6 +248,15 @@ def test_a_rig_lies_where_it_is_in_the_scene(body, mirrored):
     joints = source.skeleton.joints @ world[:3, :3].T + world[:3, 3]
     np.testing.assert_allclose(result.rig.skeleton.joints, joints)
     np.testing.assert_allclose(result.rig.skeleton.orientations, world[:3, :3] / 100 @ axes)
+
+
+def test_a_skeleton_in_another_pose_does_not_move_its_mesh(body):
+    """Clothes with the body's joints, that stand elsewhere in the scene of their file."""
+    target, world = dressed(body), np.eye(4)
+    world[0, 3] = 0.3
+    expected = cutcell.transfer(body, target)
+    result = cutcell.transfer(body, replace(target, world=world))
+    np.testing.assert_array_equal(result.weights, expected.weights)
 
 
 @pytest.mark.parametrize("seed", range(3))
