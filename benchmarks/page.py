@@ -138,7 +138,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         "--large",
         type=int,
         nargs=2,
-        default=(300_000, 200),
+        default=(200_000, 200),
         help="vertices and joints of the character that is painted",
     )
     parser.add_argument("--only", choices=["joints", "strokes"], help="measure nothing else")

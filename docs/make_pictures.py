@@ -148,6 +148,7 @@ def page() -> None:
             visit.page.mouse.move(700, 895)
         panels(visit)
         comparisons(visit)
+        poses(visit)
         check(visit)
         clothes(visit)
         lesson(visit)
@@ -218,6 +219,26 @@ def comparisons(visit: Visit) -> None:
     expect(row.get_by_role("cell").nth(3)).not_to_have_text("", timeout=60_000)
     visit.choose("Bone", "upper_arm.L")
     take(visit, "compare")
+
+
+def poses(visit: Visit) -> None:
+    """Take a picture of saved poses, and of the vertex where one stretches most."""
+    open_address(visit, "?rig=biped&panel=pose")
+    for name, bone, slider in (("arm up", "upper_arm.L", "Z"), ("knee up", "thigh.R", "X")):
+        visit.choose("Bone", bone)
+        visit.slide(f"About {slider}", "PageUp", 6)
+        visit.settle()
+        field = visit.page.get_by_role("textbox", name="Save pose as")
+        field.fill(name)
+        field.press("Enter")
+        visit.button("Rest pose").click()
+    rows = visit.page.get_by_role("list", name="Poses and clips").get_by_role("button")
+    expect(rows.filter(has_text="→")).to_have_count(3)
+    rows.filter(has_text="arm up").click()
+    visit.button("Worst vertex").click()
+    visit.button("Side by side").click()
+    rows.first.scroll_into_view_if_needed()
+    take(visit, "poses")
 
 
 def check(visit: Visit) -> None:

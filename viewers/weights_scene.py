@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
 
 from cutcell.rig import Rig
 
@@ -79,7 +80,7 @@ def weight_colors(
     if joint is not None:
         name = short_names(rig.skeleton.names)[joint] + " and below" * branch
         columns = rig.skeleton.subtree[joint] if branch else [joint]
-        values = np.asarray(weights)[:, columns].sum(axis=1).astype(np.float32)
+        values = columns_of(weights, columns).sum(axis=1).astype(np.float32)
         title, low = f"Weight of {name}", "0"
         scalars: NDArray[Any] = values
         if scale == "log":
@@ -92,18 +93,23 @@ def weight_colors(
         reading = Reading(f"{name} ", None if scalars is values else values)
         style = {"scalars": scalars, "colormap": "weight", "reading": reading}
         return style, Legend(title, "weight", low, "1")
-    colors = to_bytes(np.clip(_mixed(rig, np.asarray(weights)), 0, 1))
+    colors = to_bytes(np.clip(_mixed(rig, csr_array(weights)), 0, 1))
     return {"colors": colors, "reading": _dominant(rig, weights)}, Legend(MIXED)
 
 
-def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
+def columns_of(weights: ArrayLike | csr_array, columns: ArrayLike) -> NDArray[np.float64]:
+    """Return the weights of some joints as an array (n, c); weights (n, j) may be sparse."""
+    if isinstance(weights, csr_array):
+        return np.asarray(weights[:, columns].toarray())
+    return np.asarray(weights)[:, columns]
+
+
+def _mixed(rig: Rig, weights: csr_array) -> NDArray[np.float64]:
     """Mix the colours of joints by vertex; most weights are zero, and cost nothing."""
-    count, joints = weights.shape
-    weighted = np.flatnonzero(weights > 0)
-    vertex = weighted // joints
-    joint = weighted - vertex * joints
+    count, joint = weights.shape[0], weights.indices
+    vertex = np.repeat(np.arange(count), np.diff(weights.indptr))
     # Many small weights mix to grey; a power lets the strongest show its colour.
-    strong = np.square(np.square(weights.ravel()[weighted]))
+    strong = np.square(np.square(weights.data))
     total = np.bincount(vertex, strong, count)[:, None]
     channels = colors_of(rig).T
     mixed = [np.bincount(vertex, strong * channel[joint], count) for channel in channels]
@@ -122,7 +128,7 @@ def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legen
 
 def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by its number of influences; see `weight_colors`."""
-    count = (np.asarray(weights) > 0).sum(axis=1).astype(np.float32)
+    count = np.asarray((csr_array(weights) > 0).sum(axis=1)).astype(np.float32)
     most = max(int(count.max(initial=1)), 2)
     legend = Legend("Influences", "count", "1", f"{most}")
     style = {"scalars": count, "colormap": "count", "limits": (1.0, float(most))}
@@ -192,4 +198,11 @@ def bone_difference_colors(
 
 
 def _dominant(rig: Rig, weights: ArrayLike) -> Reading:
-    return Reading("", np.asarray(weights).argmax(axis=1), rig.skeleton.names)
+    rows = csr_array(weights)
+    count, joints = rows.shape
+    vertex = np.repeat(np.arange(count), np.diff(rows.indptr))
+    largest, dominant = np.zeros(count), np.full(count, joints)
+    np.maximum.at(largest, vertex, rows.data)
+    best = rows.data == largest[vertex]
+    np.minimum.at(dominant, vertex[best], rows.indices[best])  # of equal ones the first
+    return Reading("", np.where(largest > 0, dominant, 0), rig.skeleton.names)

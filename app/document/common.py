@@ -24,6 +24,7 @@ class Common(param.Parameterized):
     demo = param.String("", doc="Id of the demo character that was chosen; else empty.")
     rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")
     binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
+    binding_warnings: Any = param.Parameter(None, doc="Warnings about it, or None so far.")
     built_graph: Any = param.Parameter(None, doc="The graph that was built, or None so far.")
 
     joint = param.Integer(0, doc="The chosen joint.", precedence=MOMENT)
@@ -105,3 +106,8 @@ class Common(param.Parameterized):
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights
+
+    @property
+    def rows(self) -> Any:
+        """`weights`, sparse where they are computed: the array takes long after each change."""
+        return self.weights if self.binding is None else self.binding.rows

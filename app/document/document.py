@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -103,13 +104,22 @@ def put(state: Any, **values: Any) -> None:
     changed = changed_only(state, values)
     parts = [changed.get(name, getattr(state, name)) for name in ("own", "repair", "edits")]
     if changed.keys() & {"own", "repair", "edits"} and "rig" not in values:
-        changed |= changed_only(state, {"rig": applied(*parts)})
+        changed |= changed_only(state, {"rig": _rig_of(state, changed, *parts)})
     rig, edits = changed.get("rig", state.rig), parts[-1]
     if state.rig is not None and not same_structure(state.rig, rig):
         changed = {**_following(state, rig), **changed, "moved": None}
     if state.layer is not None and state.layer >= len(edits.layers):
         changed = {"layer": None, **changed}
     state.param.update(**changed)
+
+
+def _rig_of(
+    state: Any, changed: Mapping[str, Any], own: Rig, repair: Repair | None, edits: Edits
+) -> Rig:
+    of_skeleton = attrgetter("joints", "removed")
+    if not changed.keys() & {"own", "repair"} and of_skeleton(edits) == of_skeleton(state.edits):
+        return edited_rig(state.rig, edits)  # only layers change: the rig stays the same object
+    return applied(own, repair, edits)
 
 
 def changed_only(state: Any, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from cutcell.editing.selections import Neighbours
 from cutcell_viewers.description import Actor
 from cutcell_viewers.marks import outline, vertex_dots
 from cutcell_viewers.palette import BONE_EDGE
+from cutcell_viewers.weights_scene import columns_of
 
 from ..document.selection import selected
 from ..document.state import State
@@ -55,7 +56,7 @@ def _within(cells: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[Any]:
     return np.ascontiguousarray(cells[chosen[cells].any(axis=1)])
 
 
-def outlined(state: State, body: Actor, weights: NDArray, colors: str) -> dict[str, Actor]:
+def outlined(state: State, body: Actor, weights: Any, colors: str) -> dict[str, Actor]:
     """Return an outline of the vertices that follow the chosen joint, where its weight is shown."""
     if colors != "bone" or not state.weight_outline:
         return {}
@@ -63,7 +64,7 @@ def outlined(state: State, body: Actor, weights: NDArray, colors: str) -> dict[s
 
     def make() -> Actor:
         welded = neighbours_of(state).welded
-        inside = weights[:, state.joint] > 0
+        inside = columns_of(weights, [state.joint])[:, 0] > 0
         return outline(body, welded, inside, color=BONE_EDGE, width=OUTLINE_WIDTH)
 
     lines = state.memo("weight outline", inputs, make)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.joint_colors import colors_of
@@ -72,7 +73,7 @@ def weights_look(
     how = state.weight_scale, state.weight_limit, state.asymmetry
     layer = chosen_layer(state) if colors == "mask" else None
     of_edits = layer, state.edits.selections if colors == "selections" else None
-    inputs = (*of_rig, weights, state.weights, colors, which, state.truth, *how, *of_edits)
+    inputs = (*of_rig, weights, state.rows, colors, which, state.truth, *how, *of_edits)
     style, legend = state.memo(name, inputs, lambda: coloring(state, colors, weights))
     coloured = colors in ("mix", "dominant")
     if coloured:
@@ -91,7 +92,7 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
     # Mirror images change with what is painted, masks and selections do not.
     other = weights_shown(state) in ("symmetry", "mask", "selections")
-    if posed or other or weights_seen(state) is not state.weights:
+    if posed or other or weights_seen(state) is not state.rows:
         return {}
     file_weights = state.rig.weights
     few = SimpleNamespace(
@@ -110,10 +111,20 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     return {name: style[name] for name in ("colors", "scalars") if name in style}
 
 
+def file_rows(state: State) -> csr_array:
+    """Return the file's weights (n, j) as a sparse matrix."""
+    weights = state.rig.weights
+    rows: csr_array = state.memo("file rows", (weights,), lambda: csr_array(weights))
+    return rows
+
+
 def weights_seen(state: State) -> Any:
-    """Return the weights that are coloured; the file's own until others are computed."""
+    """Return the weights that are coloured; the file's own until others are computed.
+
+    Those that are computed are sparse.
+    """
     file_weights = state.rig.weights if state.weights_of == "file" else None
-    return state.weights if file_weights is None else file_weights
+    return state.rows if file_weights is None else file_weights
 
 
 def weights_shown(state: State) -> str:

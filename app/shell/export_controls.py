@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell.binding.warnings import SAME_WEIGHT
 from cutcell.io import keeps_document
@@ -19,6 +20,7 @@ from ..document.state import State
 from ..editing.compute.stack import vertices_of
 from ..editing.correct import commands as correct
 from ..headless.interactive import VIEWS, interactive_page
+from ..looks.weights import file_rows
 from ..widgets import controls as ui
 from .export_code import copy_command, copy_script
 from .session import export as actions
@@ -48,19 +50,22 @@ def changed_rows(state: State) -> dict[str, int] | None:
     None where the file has no weights.
     """
     rig, binding = state.rig, state.binding
-    file_weights = rig.weights
-    if state.repair is not None and state.repair.codes:
-        file_weights = applied(state.own, None, state.edits).weights
-    if file_weights is None or file_weights.shape != binding.weights.shape:
+    if rig.weights is None or rig.weights.shape != binding.rows.shape:
         return None
-    differs = _rows_differ(binding.weights, file_weights)
+    from_own = from_rig = _rows_differ(binding.rows, file_rows(state))
+    if state.repair is not None and state.repair.codes:
+        own_weights = applied(state.own, None, state.edits).weights
+        if own_weights is None or own_weights.shape != binding.rows.shape:
+            return None
+        from_own = _rows_differ(binding.rows, csr_array(own_weights))
+    differs = from_own.copy()
     counts: Counter[str] = Counter()
     for layer in reversed(state.edits.layers):
         if not layer.is_reach:
             rows = vertices_of([layer], binding.graph, len(differs))
             counts[layer.title] += int(differs[rows].sum())
             differs[rows] = False
-    repaired = differs & ~_rows_differ(binding.weights, rig.weights)
+    repaired = differs & ~from_rig
     counts["Repaired"] += int(repaired.sum())
     counts[COMPUTED] += int((differs & ~repaired).sum())
     return {title: number for title, number in counts.items() if number}
@@ -77,9 +82,9 @@ def loss(state: State) -> str:
     return f"The export also replaces {rows} that were not edited. From file keeps them."
 
 
-def _rows_differ(one: NDArray, other: NDArray) -> NDArray[np.bool_]:
+def _rows_differ(one: csr_array, other: csr_array) -> NDArray[np.bool_]:
     """Return the vertices with other weights; one, other (n, j)."""
-    differs: NDArray[np.bool_] = np.abs(one - other).max(axis=1, initial=0) > SAME_WEIGHT
+    differs: NDArray[np.bool_] = abs(one - other).max(axis=1).toarray().ravel() > SAME_WEIGHT
     return differs
 
 

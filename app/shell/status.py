@@ -44,13 +44,6 @@ _LINE = {
 }
 
 
-def only_weights(event: Any) -> bool:
-    """Whether a change of the binding left the distances as they were."""
-    old, new = event.old, event.new
-    is_update = event.name == "binding" and old is not None and new is not None
-    return is_update and old.distances is new.distances
-
-
 def warning(state: State) -> tuple[str, str] | None:
     """Return the warnings about the result as one message."""
     texts = [link.text for link in state.warnings]
@@ -143,10 +136,9 @@ def messages(session: Session) -> pmui.Column:
     buttons = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=BUTTONS)
 
     def update(*events: Any) -> None:
-        if events and all(only_weights(event) for event in events):
-            (event,) = events
-            if alert.closed or event.old.warnings == event.new.warnings:
-                return
+        of_edits = [one.name == "binding_warnings" and one.old is not None for one in events]
+        if events and all(of_edits) and alert.closed and state.binding_warnings is not None:
+            return  # it stays closed until distances change
         # A step asks before it shows what the warnings say.
         expected = warning(state) if state.lesson_step is None else None
         severity, text = state.message or expected or ("info", "")
@@ -160,7 +152,7 @@ def messages(session: Session) -> pmui.Column:
         if event.new:
             alert.visible = buttons.visible = False
 
-    state.param.watch(update, ["message", "binding", "built_graph", "step"])
+    state.param.watch(update, ["message", "binding_warnings", "built_graph", "step"])
     alert.param.watch(closed, "closed")
     place = ui.column(
         alert, buttons, stylesheets=[style("page/messages_place")],

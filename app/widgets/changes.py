@@ -1,5 +1,7 @@
 """Messages for the browser that turn one description of a scene into another."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any
 
@@ -11,6 +13,9 @@ from cutcell_viewers.description import Actor, Apart, Description, Legend, Readi
 from cutcell_viewers.lighting import shading
 from cutcell_viewers.palette import colormap, to_hex
 from cutcell_viewers.skin import Skin
+
+FEW = 0.25
+"""Share of an actor's points up to which those that changed are sent one by one."""
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:
@@ -51,11 +56,80 @@ def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any
     return message
 
 
+def repainted(old: Actor, new: Actor, share: float = 1.0) -> tuple[dict[str, Any], Actor]:
+    """Return how some points of a surface differ in colours and influences, as a message.
+
+    Also returns the old actor with these points as they are in the new one. The message is empty
+    where nothing differs, or more than a share of the points.
+    """
+    pairs: dict[str, tuple[Any, Any]] = {}
+    if old.materials is None and new.materials is None:
+        pairs["colors"] = old.colors, new.colors
+        if (old.colormap, old.limits) == (new.colormap, new.limits):
+            pairs["scalars"] = old.scalars, new.scalars
+    if old.reading is not None and new.reading is not None and _is_alike(old.reading, new.reading):
+        pairs["readings"] = old.reading.values, new.reading.values
+    if old.skin is not None and new.skin is not None:
+        pairs["joints"] = old.skin.joints, new.skin.joints
+        pairs["weights"] = old.skin.weights, new.skin.weights
+    pairs = {name: pair for name, pair in pairs.items() if _fit(*pair)}
+    flags = [_rows_differ(a, b) for a, b in pairs.values() if a is not b]
+    which = np.flatnonzero(np.any(flags, axis=0)) if flags else np.zeros(0, np.intp)
+    if not 0 < len(which) <= share * len(new.points):
+        return {}, old
+    message: dict[str, Any] = {"vertices": which.astype(np.uint32)}
+    message |= {name: pair[1][which].ravel() for name, pair in pairs.items()}
+    if "joints" in pairs and new.skin is not None:
+        message["count"] = new.skin.joints.shape[1]
+        old = replace(old, skin=new.skin)
+    if "readings" in pairs:
+        old = replace(old, reading=new.reading)
+    return message, replace(
+        old, **{name: pairs[name][1] for name in ("colors", "scalars") if name in pairs}
+    )
+
+
+def painted(actor: Actor, rows: Mapping[str, Any]) -> Actor:
+    """Return an actor with other colours and influences of some points, as in a message."""
+    which, fields = rows["vertices"], {}
+    for name in ("colors", "scalars"):
+        before = getattr(actor, name)
+        if name in rows and before is not None:
+            fields[name] = _with_rows(before, which, rows[name].reshape(-1, *before.shape[1:]))
+    if "joints" in rows and actor.skin is not None:
+        skin = actor.skin
+        others = (rows[name].reshape(len(which), -1) for name in ("joints", "weights"))
+        pairs = zip((skin.joints, skin.weights), others, strict=True)
+        fields["skin"] = Skin(*(_with_rows(before, which, other) for before, other in pairs))
+    return replace(actor, **fields)
+
+
+def _with_rows(array: NDArray, which: NDArray, rows: NDArray) -> NDArray:
+    """Return a copy with other rows at some places; the narrower of both is filled with zeros."""
+    width = max(array.shape[1:], rows.shape[1:])
+    result = np.zeros((len(array), *width), array.dtype)
+    result[:, *(slice(size) for size in array.shape[1:])] = array
+    result[which] = 0
+    result[which, *(slice(size) for size in rows.shape[1:])] = rows
+    return result
+
+
+def _fit(a: NDArray | None, b: NDArray | None) -> bool:
+    return a is not None and b is not None and a.shape == b.shape
+
+
+def _rows_differ(a: NDArray, b: NDArray) -> NDArray[np.bool_]:
+    return np.asarray((a != b).reshape(len(a), -1).any(axis=1))
+
+
 def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     part: dict[str, Any] = {}
     if old is None or old.kind != new.kind:
         part["kind"] = new.kind
         old = None
+    elif new.kind == "surface" and _fit(old.points, new.points):
+        rows, old = repainted(old, new, FEW)
+        part |= {"repainted": rows} if rows else {}
     for name, dtype in (("points", np.float32), ("normals", np.float32), ("cells", np.uint32)):
         value = getattr(new, name)
         if value is not None and (old is None or not _same(getattr(old, name), value)):
@@ -176,8 +250,12 @@ def _same(a: NDArray | None, b: NDArray | None) -> bool:
 def _same_reading(old: Reading | None, new: Reading | None) -> bool:
     if old is None or new is None:
         return old is new
+    return _is_alike(old, new) and _same(old.values, new.values)
+
+
+def _is_alike(old: Reading, new: Reading) -> bool:
     fields = attrgetter("text", "names", "percent", "unit")
-    return fields(old) == fields(new) and _same(old.values, new.values)
+    return bool(fields(old) == fields(new))
 
 
 def _same_skin(old: Actor, new: Actor) -> bool:

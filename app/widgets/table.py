@@ -34,7 +34,7 @@ class Control:
     watched : str
         Parameter of the widget that changes when a person chooses.
     repeats : bool
-        Whether Enter in a field chooses its text again.
+        Whether Enter in a field chooses its text again that is the same.
     declared : callable, optional
         Function of the parameter that returns options of the widget besides its label.
     **options
@@ -125,8 +125,14 @@ def _connect(session: Session, widget: Any, row: Any) -> None:
         widget.on_click(lambda event: row.act(session, event))
     else:
         widget.param.watch(chosen, row.watched)
+
+    def repeat(event: Any) -> None:
+        # Enter comes before the new value of a text that was changed, which is chosen with that.
+        if widget.value_input == widget.value:
+            row.act(session, widget.value)
+
     if row.repeats:
-        widget.param.watch(lambda event: row.act(session, widget.value), "enter_pressed")
+        widget.param.watch(repeat, "enter_pressed")
 
 
 def _update(widget: Any, values: dict[str, Any]) -> None:

@@ -1,7 +1,8 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar, Unpack
+from dataclasses import replace
+from typing import Any, TypeVar, Unpack, cast
 
 import param
 from panel.custom import JSComponent
@@ -14,8 +15,8 @@ from cutcell_viewers.lighting import LIGHTS
 from ..files.receive import Receiver
 from ..server.protocol.reading import read
 from ..server.protocol.received import CameraMoved, Message, Ready, Time
-from ..server.protocol.sent import ToBrowser
-from .changes import changes
+from ..server.protocol.sent import Painted, ToBrowser
+from .changes import changes, painted, repainted
 from .modules import script
 
 ACTORS = frozenset({"actors", "images", "bones", "pose", "clip"})
@@ -102,7 +103,16 @@ class SceneView(JSComponent):
         self._send_msg({"download": {"name": name, "content": content}})
 
     def answer(self, **message: Unpack[ToBrowser]) -> None:
-        """Answer a request of the browser; the answer is not sent again to a new one."""
+        """Answer a request of the browser; the answer is not sent again to a new one.
+
+        Of points that are painted, those that the browser shows already are left out.
+        """
+        body = self._sent.actors.get("body")
+        rows = message.get("painted")
+        if rows is not None and "vertices" in rows and body is not None:
+            after = painted(body, rows)
+            self._sent = replace(self._sent, actors={**self._sent.actors, "body": after})
+            message["painted"] = cast(Painted, repainted(body, after)[0])
         self._send_msg(message)
 
     def _send(self, message: Mapping[str, Any]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,21 +37,27 @@ Shown = (Filled, Attached, Painted)
 """Contents that a person has chosen the joints of."""
 SAME_WEIGHT = 1e-6
 """Weights that differ by less are the same: files round them."""
+_finer: WeakKeyDictionary[BoneDistances, dict[bytes, int]] = WeakKeyDictionary()
+"""Resolutions that bones need, by which joints have no weight: edits of layers seldom change it."""
 
 
 def with_warnings(rig: Rig, binding: Binding, edits: Edits) -> Binding:
     """Return a binding with warnings about its weights and the data they were computed from."""
+    warned = replace(binding, warnings=warnings_of(rig, binding, edits))
+    vars(warned)["stretch"] = binding.stretch  # not measured again
+    return warned
+
+
+def warnings_of(rig: Rig, binding: Binding, edits: Edits) -> tuple[str, ...]:
+    """Return warnings about weights and the data they were computed from."""
     distances = binding.distances
-    warnings = (
+    return (
         *_of_distances(distances),
         *_inferred_bones(rig, distances),
         *_weightless(rig, distances, binding.rows),
         *_stretches(rig, binding.stretch),
         *_blocked_by_locks(rig, distances.graph, edits.layers),
     )
-    warned = replace(binding, warnings=warnings)
-    vars(warned)["stretch"] = binding.stretch  # not measured again
-    return warned
 
 
 def _of_distances(distances: BoneDistances) -> Iterator[str]:
@@ -90,7 +97,10 @@ def _weightless(rig: Rig, distances: BoneDistances, weights: csr_array) -> Itera
     deform = rig.skeleton.deform
     weightless = deform & (weights.sum(axis=0) == 0)
     if weightless.any():
-        finer = _finer_resolution(distances, weightless)
+        remembered, key = _finer.setdefault(distances, {}), weightless.tobytes()
+        if key not in remembered:
+            remembered[key] = _finer_resolution(distances, weightless)
+        finer = remembered[key]
         yield (
             f"{weightless.sum()} of {deform.sum()} joints that deform get no weight: "
             f"{rig.skeleton.listed(weightless)}"

@@ -207,14 +207,17 @@ def _beyond_neighbours(rows: NDArray[np.float64], links: csr_array) -> NDArray[n
 
     Shapes: rows (k, j), links (k, k). Weights that fall steadily, in steps too, have none.
     """
-    has_any = np.diff(links.indptr) > 0
-    begin, beyond = links.indptr[:-1][has_any], np.zeros(len(rows))
+    beyond, has_any = np.zeros(len(rows)), np.diff(links.indptr) > 0
     for column in np.ascontiguousarray(rows.T):
-        around, own = column[links.indices], column[has_any]
-        if around.any():
+        weighted = np.flatnonzero(column)
+        near = np.union1d(weighted, links[weighted].indices)  # elsewhere all are zero
+        near = near[has_any[near]]
+        if len(near):
+            part, own = links[near], column[near]
+            around, begin = column[part.indices], part.indptr[:-1]
             more = own - np.maximum.reduceat(around, begin)
             less = np.minimum.reduceat(around, begin) - own
-            beyond[has_any] += np.maximum(np.maximum(more, less), 0) / 2
+            beyond[near] += np.maximum(np.maximum(more, less), 0) / 2
     return np.asarray(beyond * rows.any(axis=1))  # no weight at all is another fault
 
 

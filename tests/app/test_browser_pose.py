@@ -219,6 +219,14 @@ def test_poses_are_saved_shown_and_filmed_by_keys(visit, tmp_path):
     expect(pose).to_have_attribute("aria-current", "true")
     visit.settle()
     np.testing.assert_allclose(visit.points(), bent, atol=1e-6)
+    visit.slide("About X", "PageUp", 4)
+    visit.settle()
+    box.fill("twisted")
+    box.press("Enter")
+    expect(rows.get_by_role("button")).to_have_count(3)
+    pose.press("Enter")
+    visit.settle()
+    np.testing.assert_allclose(visit.points(), bent, atol=1e-6, err_msg="it was not saved over")
     visit.button("Worst vertex").press("Enter")
     expect(page.get_by_role("button", name="Why these weights?")).to_be_visible()
     page.keyboard.press("Escape")
@@ -236,7 +244,7 @@ def test_poses_are_saved_shown_and_filmed_by_keys(visit, tmp_path):
     with Image.open(tmp_path / "film.gif") as film:
         assert film.n_frames > 20
     visit.button("Delete pose").press("Enter")
-    expect(rows.get_by_role("button")).to_have_count(1)
+    expect(rows.get_by_role("button")).to_have_count(2)
 
 
 def test_a_film_and_the_numbers_come_out(visit, tmp_path):

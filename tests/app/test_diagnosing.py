@@ -104,7 +104,8 @@ def test_a_warning_about_new_weights_leads_to_them_and_not_to_those_of_the_file(
     warning = LocatedWarning("it stretches", "stretched-surface")
     vertices, joints = bound.state.binding.weights.shape
     weights = np.eye(joints)[np.arange(vertices) % joints]
-    bound.state.binding = replace(bound.state.binding, rows=csr_array(weights), warnings=(warning,))
+    bound.state.binding = replace(bound.state.binding, rows=csr_array(weights))
+    bound.state.binding_warnings = (warning,)
     link = bound.state.warnings[-1]
     assert link.label == "Show: surface that stretches"
     bound.state.param.update(panel="check", finding=link.code)

@@ -14,7 +14,7 @@ from cutcell_app.editing.brush.choices import MIN_RADIUS, MIN_STRENGTH
 from cutcell_app.editing.brush.strokes import radius_of
 from cutcell_app.editing.compute.brush import paint_weights
 from cutcell_app.editing.compute.stack import painted_vertices
-from cutcell_app.editing.compute.stroke import Brush
+from cutcell_app.editing.compute.stroke import Brush, PaintSurface, Stroke
 from cutcell_app.editing.correct import commands as correct
 from cutcell_app.editing.layers.commands import STEPS, in_steps
 from cutcell_app.editing.select.controls import SELECTION
@@ -53,6 +53,40 @@ def stroke(session, *vertices, **more):
         point = [vertex, vertex, vertex, 1, 0, 0]
         last = place == len(vertices) - 1
         paint(session, points=point, first=place == 0, done=last, **more)
+
+
+def test_a_stroke_goes_on_from_the_one_before_it_that_is_not_computed_yet(
+    painter, loop, monkeypatch
+):
+    monkeypatch.setattr("cutcell_app.document.state.QUICK_MESH", 0)
+    state = painter.state
+    expected, made = state.binding.weights, Brush(radius_of(state), "add", state.brush_strength)
+    rig, most = state.rig, state.max_influences
+    for vertex in (MIDDLE, MIDDLE + 1):
+        expected = paint_weights(rig, expected, 2, [vertex], made, max_influences=most)
+    stroke(painter, MIDDLE)
+    paint(painter, points=[MIDDLE + 1] * 3 + [1, 0, 0], first=True)
+    before = state.binding
+    loop.run_until(lambda: state.binding is not before)  # the first arrives during the second
+    paint(painter, done=True)
+    settled(painter, loop)
+    assert {"gone": True} not in [answer.get("painted") for answer in painter.answers]
+    np.testing.assert_allclose(state.binding.weights, expected, rtol=0, atol=2 / STEPS)
+
+
+@pytest.mark.parametrize("mode", ["add", "subtract", "replace", "smooth"])
+def test_pieces_of_a_stroke_add_up_to_it(painter, mode):
+    state = painter.state
+    brush = Brush(radius_of(state), mode, state.brush_strength, state.brush_value)
+    made = Stroke(PaintSurface(state.rig.mesh), state.rig, state.binding.rows, 2, brush)
+    pieces = state.binding.weights.copy()
+    for vertex in (MIDDLE, MIDDLE + 1, MIDDLE + 40, MIDDLE):
+        made.pass_over(np.array([[vertex]]), np.ones((1, 1)))
+        which, rows = made.continued()
+        pieces[which] = rows
+    vertices, rows = made.painted()
+    np.testing.assert_allclose(pieces[vertices], rows, rtol=0, atol=1e-12)
+    assert mode == "smooth" or not len(which), "the last one passes over a point again"
 
 
 @pytest.mark.parametrize("mode", ["add", "subtract", "replace", "smooth"])

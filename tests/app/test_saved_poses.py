@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import panel_material_ui as pmui
 import pytest
+from panel.util import edit_readonly
 
 from cutcell import Edits, SavedPose
 from cutcell.pose import linear_blend_skinning, pose_at, rotate_joint
@@ -91,6 +92,26 @@ def test_a_pose_is_saved_shown_renamed_and_deleted_with_the_edits(posed, loop):
         assert list(state.edits.poses) == expected
     keys.act(posed, "redo")
     assert list(state.edits.poses) == ["elbow", "raised"]
+
+
+def test_a_new_name_leaves_the_pose_of_the_old_one(posed):
+    state = posed.state
+    field = draw(posed, pose_list.SAVED).select(pmui.TextInput)[0]
+
+    def enter(name):
+        """Type a name as a browser does: Enter is heard before the value."""
+        with edit_readonly(field):
+            field.value_input = name
+        field.param.trigger("enter_pressed")
+        field.value = name
+
+    enter("bent")
+    state.turns = {0: (0.0, 0.0, 30.0)}
+    enter("raised")
+    assert state.edits.poses == {"bent": POSE, "raised": SavedPose({"shoulder": (0, 0, 30)})}
+    state.turns = {0: (0.0, 0.0, 60.0)}
+    enter("raised")
+    assert state.edits.poses["raised"] == SavedPose({"shoulder": (0, 0, 60)})
 
 
 def test_a_frame_of_a_clip_is_saved_and_shown_again(posed):

@@ -19,6 +19,8 @@ from cutcell_app.features.weights import controls
 from cutcell_app.shell.export_code import copy_command, copy_script
 from cutcell_app.shell.session import keys
 from cutcell_app.shell.session.export import export_bound
+from cutcell_viewers.palette import UNREACHED, to_bytes
+from cutcell_viewers.weights_scene import selections_colors
 from tests.app.loop import settled
 from tests.cutcell.cli.conftest import run
 from tests.cutcell.cli.files import write_obj
@@ -219,3 +221,15 @@ def test_saved_selections_are_offered_as_colours_where_there_are_some(dressing, 
     assert resolve(dressing.state).legend.title != "Saved selections"
     drop(dressing, loop, written(tmp_path / "sleeve.obj", sleeve()))
     assert controls._colours(dressing.state)["value"] == "selections"
+
+
+def test_the_last_of_selections_that_overlap_is_seen_and_the_rest_is_grey():
+    sets = {"all of them": None, "some": np.array([1, 2]), "others": np.array([2, 3])}
+    style, legend = selections_colors(sets, 5)
+    assert style["reading"].values.tolist() == [1, 2, 3, 3, 1]
+    assert [text for _, text in legend.swatches] == ["all of them: 5", "some: 2", "others: 2"]
+    shown = [tuple(color) for color in style["colors"].tolist()]
+    assert shown[2] == shown[3]
+    assert len({shown[0], shown[1], shown[2]}) == 3
+    style, _ = selections_colors({"some": np.array([1])}, 2)
+    assert style["colors"][0].tolist() == to_bytes(UNREACHED).tolist()

@@ -9,7 +9,7 @@ import cutcell
 from cutcell_app.document.framing import camera_part, theme_part
 from cutcell_app.server.protocol.reading import MessageError
 from cutcell_app.server.protocol.received import Pick
-from cutcell_app.widgets.changes import changes
+from cutcell_app.widgets.changes import changes, painted
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import framing
 from cutcell_viewers.description import Cut, Description
@@ -54,6 +54,68 @@ def test_other_weights_send_values_not_geometry(scene, rig):
     message = changes(scene, weights_scene(rig, rig.weights, 2), set(scene.actors))
     assert set(message["actors"]["body"]) == {"scalars", "table", "limits", "reading"}
     assert set(message["actors"]["bones"]) == {"colors"}
+
+
+def other_rows(rig, count):
+    """Return weights of which the last rows are others, with as many influences."""
+    weights = rig.weights.copy()
+    weights[-count:] = weights[0]
+    return weights
+
+
+@pytest.mark.parametrize("joint", [1, None])
+def test_of_a_few_other_weights_only_these_are_sent(scene, rig, joint):
+    count = len(rig.weights)
+    before, few, many = (
+        weights_scene(rig, weights, joint)
+        for weights in (rig.weights, other_rows(rig, 3), other_rows(rig, count // 2))
+    )
+    body = changes(before, few, set(before.actors))["actors"]["body"]
+    assert set(body) == {"repainted"}
+    rows, shown = body["repainted"], few.actors["body"]
+    assert set(rows["vertices"]) <= set(range(count - 3, count))
+    known = painted(before.actors["body"], rows)
+    np.testing.assert_array_equal(known.skin.joints, shown.skin.joints)
+    np.testing.assert_array_equal(known.skin.weights, shown.skin.weights)
+    np.testing.assert_array_equal(known.scalars, shown.scalars)
+    np.testing.assert_array_equal(known.colors, shown.colors)
+    if joint is None:
+        np.testing.assert_array_equal(rows["readings"], shown.reading.values[rows["vertices"]])
+    assert "repainted" not in changes(before, many, set(before.actors))["actors"]["body"]
+
+
+def test_what_a_stroke_has_shown_is_not_sent_again(view, scene):
+    body = scene.actors["body"]
+    scalars = body.scalars.copy()
+    scalars[-3:] += 0.5
+    after = replace(scene, actors={**scene.actors, "body": replace(body, scalars=scalars)})
+    view.present(scene)
+    view._handle_msg({"type": "ready"})
+    vertices = np.arange(len(scalars) - 5, len(scalars), dtype=np.uint32)
+    rows = {"vertices": vertices, "scalars": scalars[-5:]}
+    view.answer(painted=rows)
+    view.answer(painted=rows)
+    first, second = (message["painted"] for message in view.sent[-2:])
+    np.testing.assert_array_equal(first["vertices"], vertices[-3:])
+    assert second == {}
+    count = len(view.sent)
+    view.present(after)
+    assert len(view.sent) == count
+    view.present(scene)
+    back = view.sent[-1]["actors"]["body"]["repainted"]
+    np.testing.assert_array_equal(back["vertices"], vertices[-3:])
+    np.testing.assert_array_equal(back["scalars"], body.scalars[-3:])
+
+
+def test_a_stroke_may_widen_the_influences_of_its_points(scene):
+    body = scene.actors["body"]
+    joints, weights = np.array([[0, 1] * 4], np.uint16), np.full((1, 8), 1 / 8, np.float32)
+    rows = {"vertices": np.array([2]), "joints": joints.ravel(), "weights": weights.ravel()}
+    skin = painted(body, {**rows, "count": 8}).skin
+    width = body.skin.joints.shape[1]
+    np.testing.assert_array_equal(skin.joints[2], joints[0])
+    np.testing.assert_array_equal(skin.weights[3, :width], body.skin.weights[3])
+    assert not skin.weights[3, width:].any()
 
 
 def test_from_values_to_colours_and_back(scene, rig):

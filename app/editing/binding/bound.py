@@ -17,6 +17,8 @@ from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.threads import cancellable
 
+from ...derive.memo import Memo
+
 graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
 """How long each graph took."""
 
@@ -25,13 +27,12 @@ graph_seconds: WeakKeyDictionary[CutCellGraph, float] = WeakKeyDictionary()
 class Influences:
     """Weights of many influences: sparse, as most of an (n, j) matrix is zero; and their options.
 
-    `strongest` has the few that were kept last, by greatest number and threshold: most changes are
-    of layers.
+    `memo` has what was last made of them: most changes are of layers.
     """
 
     options: dict[str, Any]
     weights: csr_array
-    strongest: dict[tuple[Any, ...], csr_array] = field(default_factory=dict, repr=False)
+    memo: Memo = field(default_factory=Memo, repr=False)
 
 
 @dataclass(frozen=True, eq=False)

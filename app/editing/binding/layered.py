@@ -14,13 +14,16 @@ from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.binding import Binding
-from cutcell.binding.stages import bind_layer, with_layers
+from cutcell.binding.stages import bind_layer
 from cutcell.editing import Computed, Edits, Layer
+from cutcell.editing.layers import RigSources, StackedRows
 from cutcell.geodesics import BoneDistances
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.runtime.threads import cancellable
 from cutcell.weights import keep_strongest
+
+from ...derive.memo import Memo
 
 CACHED = 4
 """Number of contents whose weights are remembered."""
@@ -85,21 +88,25 @@ def recompute(
 
 
 def layered(
-    rig: Rig, binding: Binding, edits: Edits, recomputed: Mapping[str, Recomputed]
+    rig: Rig, binding: Binding, edits: Edits, recomputed: Mapping[str, Recomputed], memo: Memo
 ) -> Binding:
     """Return a binding with layers over its weights.
 
-    Weights of layers that are not given are those of the base.
+    Weights of layers that are not given are those of the base. The memo keeps what strokes of a
+    brush leave as it is.
     """
     few = binding.method
 
     def computed(layer: Layer) -> NDArray[np.float64]:
         result = recomputed.get(_key(layer))
         if result is None:
-            return binding.weights
+            return binding.rows.toarray()
         assert isinstance(layer.content, Computed)
         method = layer.content.method(few)
         options = method.max_influences, method.threshold
         return keep_strongest(result.distances, result.weights, *options).toarray()
 
-    return with_layers(rig, binding, edits.stack(), computed)
+    sources = RigSources(rig, few, binding.graph, computed)
+    inputs = rig, binding, *(one for pair in sorted(recomputed.items()) for one in pair)
+    stacked = memo("stacked", inputs, lambda: StackedRows(binding.rows, sources))
+    return replace(binding, rows=stacked.rows(edits.stack()))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.binding import Binding
-from cutcell.binding.warnings import with_warnings
+from cutcell.binding.warnings import warnings_of
 from cutcell.editing import Computed, Edits
 from cutcell.editing.edited import adjustments_of
 from cutcell.graph import CutCellGraph
@@ -26,6 +26,7 @@ from cutcell.weights.skinning_weights import last_of, weight_steps
 from cutcell.weights.warm_up import is_compiled, warm_up
 
 from ...derive.derived import Derived
+from ...derive.jobs import DESCRIBING
 from ...document.method import GRAPH, WEIGHTS, effective, method_of
 from ...document.state import State
 from .bound import MOST, Bound, Influences, bind_wide, graph_seconds
@@ -142,19 +143,21 @@ def _binding(
     progress: Progress,
 ) -> Binding:
     few: dict[str, Any] = {"max_influences": max_influences, "threshold": threshold}
-    return with_warnings(rig, layered(rig, _base(bound, influences, few), edits, recomputed), edits)
+    base = _base(bound, influences, few)
+    return layered(rig, base, edits, recomputed, influences.memo)
 
 
 def _base(bound: Bound, influences: Influences, few: dict[str, Any]) -> Binding:
     """Return the binding below all layers, with few influences."""
-    binding, key = bound.binding, tuple(few.values())
-    strongest = influences.strongest.get(key)
-    if strongest is None:
+    binding = bound.binding
+
+    def make() -> Binding:
         strongest = keep_strongest(binding.distances, influences.weights, **few)
-        influences.strongest.clear()
-        influences.strongest[key] = strongest
-    options = {"leaf": binding.method.leaf, **influences.options, **few}
-    return replace(binding, rows=strongest, method=binding.method.with_options(**options))
+        options = {"leaf": binding.method.leaf, **influences.options, **few}
+        return replace(binding, rows=strongest, method=binding.method.with_options(**options))
+
+    base: Binding = influences.memo("base", (bound, *few.values()), make)
+    return base
 
 
 def weights_below(state: State, place: int) -> NDArray[np.float64]:
@@ -162,11 +165,26 @@ def weights_below(state: State, place: int) -> NDArray[np.float64]:
     return weights_with(state, replace(state.edits, layers=state.edits.layers[:place]))
 
 
+def newest_rows(state: State) -> Any:
+    """Return the weights (n, j) by the present edits, also before their binding is there.
+
+    They are sparse where they are computed.
+    """
+    if state.bound is None or state.influences is None:
+        return state.rows
+    return _layered(state, state.edits).rows
+
+
 def weights_with(state: State, edits: Edits) -> NDArray[np.float64]:
     """Return the weights (n, j) that other layers give, by the newest results."""
+    return _layered(state, edits).weights
+
+
+def _layered(state: State, edits: Edits) -> Binding:
     few = {"max_influences": state.max_influences, "threshold": state.threshold}
+    recomputed = {key: state.recomputed.get(key) for key in recomputed_layers(edits)}
     base = _base(state.bound, state.influences, few)
-    return layered(state.rig, base, edits, state.recomputed).weights
+    return layered(state.rig, base, edits, recomputed, state.influences.memo)
 
 
 def bind_as_chosen(
@@ -183,10 +201,16 @@ def bind_as_chosen(
     return _binding(None, bound, bound.influences, *few, edits, recomputed, rig, progress)
 
 
+def _warnings(
+    binding: Binding, quick: bool, rig: Rig, edits: Edits, progress: Progress
+) -> tuple[str, ...]:
+    return warnings_of(rig, binding, edits)
+
+
 def _explanation_inputs(state: State) -> tuple[Any, ...] | None:
     if state.binding is None or state.vertex is None or not state.explain:
         return None
-    joint = None if state.binding.weights[state.vertex, state.joint] else state.joint
+    joint = None if state.binding.rows[state.vertex, state.joint] else state.joint
     return state.rig, state.binding, state.vertex, state.edits, joint
 
 
@@ -259,6 +283,17 @@ RESULTS = (
         immediate=lambda state: state.quick,
         patient=True,
         failed=go_back,
+    ),
+    Derived(
+        "binding_warnings",
+        lambda state: None if state.binding is None else (state.binding, state.quick),
+        _warnings,
+        more=lambda state: (state.rig, state.edits),
+        after=("binding",),
+        keeps=lambda old, new: old[0].distances is new[0].distances,
+        pause=lambda old, new: old is not None and not new[1],  # between strokes
+        slots=lambda state: DESCRIBING,
+        immediate=lambda state: state.quick,
     ),
     Derived(
         "explanation",

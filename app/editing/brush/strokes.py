@@ -16,10 +16,12 @@ from ...looks.mask import mask_strengths
 from ...looks.weights import painted_colors, weights_shown
 from ...server.protocol import sent
 from ...server.protocol.received import Paint
+from ..binding.results import newest_rows
+from ..compute.selected import rows_at
 from ..compute.stack import locked_names, locked_weights
 from ..compute.stroke import Brush, PaintSurface, Stroke
 from ..correct.moving import mirror_of, plane_in_scene
-from ..layers.commands import put_rows
+from ..layers.commands import as_stored, put_rows
 from ..layers.masks import NO_LAYER, put_mask, stroke_strengths
 from .choices import MAX_RADIUS, MIN_RADIUS, MIN_STRENGTH
 
@@ -145,7 +147,7 @@ class BrushController:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._stroke: Stroke | None = None
-        self._of: Any = None
+        self._rows: Any = None
         self._selects: bool | None = None
         self._selected: NDArray[np.bool_] | None = None
         self._erases: bool | None = None
@@ -157,7 +159,7 @@ class BrushController:
         if message.first:
             self._begin(message.mode)
         stroke = self._stroke
-        if stroke is None or self._of is not state.binding:
+        if stroke is None or state.binding is None or self._rows is not newest_rows(state):
             self._stroke = None
             session.view.answer(painted={"gone": True})
             return
@@ -171,11 +173,13 @@ class BrushController:
         if self._mask is not None:
             self._paint_mask(stroke, message)
             return
-        vertices, rows = stroke.painted()
         if message.cancelled:
             self._stroke = None
-            self._show(vertices, state.weights[vertices])
+            vertices = stroke.touched()
+            self._show(vertices, rows_at(self._rows, vertices))
             return
+        vertices, rows = stroke.painted() if message.done else stroke.continued()
+        rows = as_stored(rows, rows_at(self._rows, vertices))  # as they will be in the scene
         self._show(vertices, self._seen(vertices, rows))
         if message.done:
             self._stroke = None
@@ -202,12 +206,13 @@ class BrushController:
             if self._mask is None:
                 session.fail(ParameterError(NO_LAYER))
                 return
+        self._rows = newest_rows(state)
         try:
             brush = Brush(radius_of(state), new_mode, state.brush_strength, state.brush_value)
             self._stroke = Stroke(
                 surface,
                 state.rig,
-                state.weights,
+                self._rows,
                 state.joint,
                 brush,
                 mirror=mirror_of(state) if state.brush_mirrored else None,
@@ -218,7 +223,6 @@ class BrushController:
             )
         except CutcellError as error:
             session.fail(error)
-        self._of = state.binding
 
     def _select(self, stroke: Stroke, message: Paint) -> None:
         """Add the touched vertices to the selection from before the stroke, or subtract them."""
@@ -255,7 +259,7 @@ class BrushController:
         strengths = stroke_strengths(self._session.state, vertices)
         if strengths is None:
             return rows
-        before = self._session.state.weights[vertices]
+        before = rows_at(self._rows, vertices)
         return np.asarray(before + strengths[:, None] * (rows - before))
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
@@ -270,7 +274,7 @@ class BrushController:
 
     def _take(self, vertices: NDArray, rows: NDArray) -> None:
         session, state = self._session, self._session.state
-        before, edits = state.weights[vertices], state.edits
+        before, edits = rows_at(self._rows, vertices), state.edits
         put_rows(session, vertices, rows)
         if state.edits == edits:
             self._show(vertices, before)

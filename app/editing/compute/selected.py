@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cutcell.editing.locks import joint_index
 from cutcell.errors import ParameterError
@@ -19,7 +21,7 @@ class Selected:
     Parameters
     ----------
     rig : Rig
-    weights : array, shape (n, j)
+    weights : array or csr_array, shape (n, j)
     vertices : array, shape (v,), int
     locked : sequence of int or str
         Joints whose weights stay.
@@ -31,7 +33,7 @@ class Selected:
     """
 
     rig: Rig
-    weights: NDArray[np.float64]
+    weights: Any
     vertices: NDArray[np.intp]
     locked: Sequence[int | str] = ()
     max_influences: int | None = None
@@ -55,7 +57,7 @@ class Selected:
     @cached_property
     def rows(self) -> NDArray[np.float64]:
         """Weights of the vertices, shape (v, j)."""
-        return self.weights[self.vertices]
+        return rows_at(self.weights, self.vertices)
 
     @property
     def allowed(self) -> NDArray[np.bool_]:
@@ -118,6 +120,12 @@ class Selected:
         rows[:, joint] = value
         can = self.takes(joint) & ((rest > 0) | (value > 0))
         return np.where(can[:, None], self.finished(rows, [joint]), self.rows)
+
+
+def rows_at(weights: Any, vertices: NDArray[np.integer]) -> NDArray[np.float64]:
+    """Return the weights of some vertices, (v, j), as an array; those of all may be sparse."""
+    rows = weights[vertices]
+    return np.asarray(rows.toarray() if isinstance(rows, csr_array) else rows)
 
 
 def _scaled(rows: NDArray[np.float64], sums: NDArray[np.float64]) -> NDArray[np.float64]:

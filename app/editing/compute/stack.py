@@ -23,6 +23,7 @@ from cutcell.editing import (
     Mask,
     Painted,
 )
+from cutcell.editing.layers import strength_of
 from cutcell.editing.layers import vertices_of as masked_by
 from cutcell.editing.layers.contents import Content
 from cutcell.editing.locks import locked_joints
@@ -60,17 +61,8 @@ def moved(edits: Edits, place: int, by: int) -> tuple[Edits, int]:
 
 def vertices_of(layers: Iterable[Layer], graph: CutCellGraph, count: int) -> NDArray[np.intp]:
     """Return the vertices, of `count`, that some layers can change."""
-    changes = np.zeros(count, np.bool_)
-    for layer in layers:
-        if not layer.is_active:
-            continue
-        which = masked_by(layer.mask, partial(components_of, graph))
-        is_changed = np.zeros(count, np.bool_)
-        is_changed[slice(None) if which is None else which] = True
-        if isinstance(layer.content, Painted):
-            is_changed &= np.isin(np.arange(count), layer.content.vertices)
-        changes |= is_changed
-    return np.flatnonzero(changes)
+    component = partial(components_of, graph)
+    return np.flatnonzero(sum(strength_of(layer, component, count) for layer in layers))
 
 
 def components_of(graph: CutCellGraph) -> NDArray[np.integer]:

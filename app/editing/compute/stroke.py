@@ -21,7 +21,7 @@ from cutcell.geometry.laplacian import cotangent_laplacian
 from cutcell.rig import Rig, TriangleMesh
 
 from .reach import SurfaceReach
-from .selected import Selected
+from .selected import Selected, rows_at
 
 BrushMode = Literal["add", "subtract", "replace", "smooth"]
 
@@ -113,14 +113,15 @@ class PaintSurface:
 class Stroke:
     """One stroke of a brush: vertices are painted once, however often it passes.
 
-    See `paint_weights` for the parameters; `weights`, (n, j), are those before the stroke.
+    See `paint_weights` for the parameters; `weights`, (n, j), which may be sparse, are those before
+    the stroke.
     """
 
     def __init__(
         self,
         surface: PaintSurface,
         rig: Rig,
-        weights: NDArray[np.float64],
+        weights: NDArray[np.float64] | csr_array,
         joint: int | str,
         brush: Brush,
         *,
@@ -130,7 +131,7 @@ class Stroke:
         within: NDArray[np.bool_] | None = None,
         locked_weights: NDArray[np.bool_] | None = None,
     ) -> None:
-        self._within = np.ones(len(weights), bool) if within is None else within
+        self._within = np.ones(weights.shape[0], bool) if within is None else within
         self._surface, self._rig, self._weights, self._brush = surface, rig, weights, brush
         self._mirror = mirror
         none = np.empty(0, np.intp)
@@ -143,6 +144,7 @@ class Stroke:
                 self._all.joint(one)
         sides = 1 if mirror is None or (partner < 0 and brush.mode != "smooth") else 2
         self._distance = np.full((sides, len(surface.reach.points)), np.inf)
+        self._before = self._distance.copy()
 
     def pass_over(self, corners: NDArray[np.integer], shares: NDArray[np.float64]) -> None:
         """Lead the brush over points of the surface.
@@ -187,12 +189,26 @@ class Stroke:
         inside = np.maximum(1 - np.square(self._distance / self._brush.radius), 0)
         return np.asarray(self._brush.strength * np.square(inside))
 
+    def continued(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Return what `painted` returns, of the vertices that changed since the last call."""
+        nearer = (self._distance < self._before).any(axis=0)
+        self._before = self._distance.copy()
+        vertices = self.touched()
+        if self._brush.mode != "smooth":  # which spreads over all that is touched
+            vertices = vertices[nearer[self._surface.reach.index[vertices]]]
+        return vertices, self._weights_of(vertices)
+
     def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
-        brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
+        vertices = self.touched()
+        return vertices, self._weights_of(vertices)
+
+    def _weights_of(self, vertices: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the weights of touched vertices, shape (v, j)."""
+        brush, index = self._brush, self._surface.reach.index
         covered = self._cover()
         if not len(vertices):
-            return vertices, self._weights[vertices]
+            return rows_at(self._weights, vertices)
         selected, cover = replace(self._all, vertices=vertices), covered[:, index[vertices]]
         rows = selected.rows
         if brush.mode == "smooth":
@@ -204,7 +220,7 @@ class Stroke:
             changes = zip(self._joints, cover, strict=True)
             moved = rows + sum(self._weight_delta(selected, part, joint) for joint, part in changes)
         named = [] if brush.mode == "smooth" else self._joints
-        return vertices, selected.finished(moved, named)
+        return selected.finished(moved, named)
 
     def check_unlocked(self) -> None:
         """Raise an error if the joint is locked at all vertices that were touched."""
@@ -238,7 +254,7 @@ class Stroke:
         rows = laplacian[inner]
         around = np.union1d(rows.indices, inner)
         first = reach.mesh.first
-        start = self._weights[first[around]]
+        start = rows_at(self._weights, first[around])
         used = np.flatnonzero(start.any(axis=0))
         is_inner = cover[around] > 0
         time, area = SPREAD * self._brush.radius**2, areas[inner]

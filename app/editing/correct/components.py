@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 
 from cutcell.editing import Layer
 from cutcell.runtime.display import shown_name
@@ -55,10 +55,8 @@ def listed(state: State) -> list[Component]:
     which, sizes = components_of(state)
     firsts = state.memo("first vertices", (which,), lambda: np.unique(which, return_index=True)[1])
     layers = {int(which[v]): layer for v, layer in part_layers(state.edits).items()}
-    weights = state.binding.weights
-    mean_weights = state.memo(
-        "of parts", (which, weights), lambda: _mean(which, weights, len(sizes))
-    )
+    rows = state.binding.rows
+    mean_weights = state.memo("of parts", (which, rows), lambda: _mean(which, rows, len(sizes)))
     names = {} if len(state.rig.parts) < 2 else state.rig.parts
     starts = [part.vertices.start for part in names]
     return [
@@ -77,7 +75,7 @@ def listed(state: State) -> list[Component]:
     ]
 
 
-def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.float64]:
+def _mean(which: NDArray[np.intp], rows: csr_array, count: int) -> NDArray[np.float64]:
     member = coo_array((np.ones(len(which)), (which, np.arange(len(which)))), (count, len(which)))
-    mean: NDArray[np.float64] = (member @ weights) / np.bincount(which, minlength=count)[:, None]
-    return mean
+    sums: NDArray[np.float64] = (member @ rows).toarray()
+    return sums / np.bincount(which, minlength=count)[:, None]

@@ -31,9 +31,7 @@ def shares_of(state: State) -> tuple[NDArray | None, NDArray | None]:
     )
     if binding is None:
         return None, shares
-    return state.memo(
-        "shares", (rig.mesh, binding.weights), lambda: count @ binding.weights
-    ), shares
+    return state.memo("shares", (rig.mesh, binding.rows), lambda: binding.rows.T @ count), shares
 
 
 def joint_rows(state: State, guess: DeformJoints | None) -> list[dict[str, Any]]:

@@ -15,9 +15,10 @@ from cutcell.errors import CutcellError
 from cutcell.rig import Skeleton
 
 from ...document.session import Session
-from ..binding.results import weights_below
+from ..binding.results import newest_rows, weights_below
 from ..compute import stack
 from ..compute.operations import ROWS
+from ..compute.selected import rows_at
 from ..correct.commands import check_alone, correct
 
 STEPS = 10_000
@@ -37,17 +38,18 @@ def put_rows(
     state = session.state
     layer, names = stack.painted_layer(state.edits, state.layer), state.rig.skeleton.names
     is_masked = layer is not None and not (layer.is_opaque and layer.mask.is_all)
-    changed, parts = [], []
+    present, changed, parts = newest_rows(state), [], []
     for start in range(0, len(vertices), ROWS):  # dense rows of all may not fit into memory
         which, dense = vertices[start : start + ROWS], rows[start : start + ROWS]
-        dense = dense.toarray() if isinstance(dense, csr_array) else dense
-        seen = state.weights[which]
-        differs = np.abs(dense - seen).max(axis=1, initial=0) > 0.5 / STEPS
+        seen = rows_at(present, which)
+        dense = as_stored(dense.toarray() if isinstance(dense, csr_array) else dense, seen)
+        differs = (dense != seen).any(axis=1)
         which, dense, seen = which[differs], dense[differs], seen[differs]
         if is_masked and layer is not None:
             dense = stack.rows_within(layer, names, which, seen, dense, state.max_influences)
+            dense = in_steps(dense) / STEPS
         changed.append(which)
-        parts.append(csr_array(in_steps(dense) / STEPS))
+        parts.append(csr_array(dense))
     if not any(map(len, changed)):
         return
 
@@ -88,8 +90,21 @@ def painted(skeleton: Skeleton, vertices: Vertices, rows: Any) -> Painted:
     return Painted(vertices[order], names, rows[order][:, used])
 
 
+def as_stored(rows: NDArray[np.float64], before: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return painted rows (k, j) as layers store them: in steps, those before where all is less."""
+    differs = np.abs(rows - before).max(axis=1, initial=0) > 0.5 / STEPS
+    stored = before.copy()
+    stored[differs] = in_steps(rows[differs]) / STEPS
+    return stored
+
+
 def in_steps(rows: NDArray[np.float64]) -> NDArray[np.int64]:
     """Round rows that sum to one to whole steps that sum to `STEPS` (the largest remainders)."""
+    used = np.flatnonzero(rows.any(axis=0))
+    if len(used) < rows.shape[1]:  # sorting all columns takes long
+        result = np.zeros(rows.shape, np.int64)
+        result[:, used] = in_steps(rows[:, used])
+        return result
     scaled = rows * STEPS
     steps = np.floor(scaled).astype(np.int64)
     order = np.argsort(-(scaled - steps), axis=1, kind="stable")

@@ -55,7 +55,7 @@ def _choose_source(session: Session, place: int) -> None:
 
 
 def _bars_text(state: State) -> str:
-    if not ui.has_joint(state) or state.weights is None:
+    if not ui.has_joint(state) or state.rows is None:
         return ""
     chosen, name = in_bars(state), ui.joint_title(state.rig, state.joint)
     if chosen is None:

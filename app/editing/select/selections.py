@@ -49,7 +49,7 @@ def _take_lasso(session: Session) -> None:
 
 def can_select(state: State) -> bool:
     """Whether vertices can be selected here: weights are in sight."""
-    is_ready = state.rig is not None and not state.bare and state.weights is not None
+    is_ready = state.rig is not None and not state.bare and state.rows is not None
     return bool(is_ready and state.open_panel.paints)
 
 

@@ -13,6 +13,7 @@ from ...document.selection import selected
 from ...document.session import Session
 from ...document.state import State
 from ...server.protocol.received import EditWeight, Message, Page, PickVertex, Sort
+from ..compute.selected import rows_at
 from .operations import edit
 
 ROWS = 20
@@ -42,19 +43,19 @@ class Table:
 def table_of(state: State) -> Table | None:
     """Return the whole table; None without a selection."""
     chosen = selected(state)
-    if not state.table or chosen is None or state.weights is None:
+    if not state.table or chosen is None or state.rows is None:
         return None
     vertices = np.flatnonzero(chosen)
-    weights, joint = state.weights, state.joint
-    total = chosen.astype(float) @ weights
+    weights, joint = rows_at(state.rows, vertices), state.joint
+    total = weights.sum(axis=0)
     most = [j for j in np.argsort(-total, kind="stable").tolist() if j != joint and total[j] > 0]
     most = most[: JOINTS - 1]
-    columns, values = [VERTEX, joint], [vertices.astype(float), weights[vertices, joint]]
+    columns, values = [VERTEX, joint], [vertices.astype(float), weights[:, joint]]
     if state.rig.weights is not None:
         columns.append(FILE)
         values.append(state.rig.weights[vertices, joint])
     columns += most
-    table = np.stack([*values, *(weights[vertices, j] for j in most)], axis=1)
+    table = np.stack([*values, *(weights[:, j] for j in most)], axis=1)
     column, largest_first = state.table_order
     key = table[:, min(column, len(columns) - 1)]
     return Table(columns, table[np.argsort(-key if largest_first else key, kind="stable")])
@@ -62,7 +63,7 @@ def table_of(state: State) -> Table | None:
 
 def _table(state: State) -> Table | None:
     choices = state.brush_selection, state.joint, state.table, *state.table_order
-    inputs = state.rig, state.weights, *choices
+    inputs = state.rig, state.rows, *choices
     table: Table | None = state.memo("weights table", inputs, lambda: table_of(state))
     return table
 
@@ -94,13 +95,15 @@ def table_parts(state: State) -> dict[str, Any]:
 def table_text(state: State) -> str:
     """Return how much the selection differs from the file; what to do without a selection."""
     chosen = selected(state)
-    if not state.table or state.weights is None:
+    if not state.table or state.rows is None:
         return ""
     if chosen is None:
         return "Select vertices to see their weights."
     if state.rig.weights is None or not state.rig.weights[chosen].any():
         return ""
-    return f"L1 to the file {weight_l1(state.weights[chosen], state.rig.weights[chosen]):.3f}."
+    return (
+        f"L1 to the file {weight_l1(rows_at(state.rows, chosen), state.rig.weights[chosen]):.3f}."
+    )
 
 
 def act(session: Session, message: Message) -> None:

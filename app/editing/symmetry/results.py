@@ -53,8 +53,8 @@ def _image(
 def _inputs(state: State) -> tuple[Any, ...] | None:
     image = state.mirror_image
     source = state.rig if state.weights_of == "file" else state.binding
-    is_there = isinstance(image, MirrorImage) and source is not None and source.weights is not None
-    return (image, source) if is_there else None
+    is_there = source is not None and (source is state.binding or source.weights is not None)
+    return (image, source) if isinstance(image, MirrorImage) and is_there else None
 
 
 def _asymmetry(image: MirrorImage, source: Any, progress: Progress) -> Asymmetry:

@@ -138,8 +138,8 @@ def with_layer(target: Rig, result: Transfer, source: str) -> tuple[Edits, int]:
 
     Selections are saved of the vertices by state.
     """
-    base = "computed" if target.weights is None else "file"
-    edits = stored_edits(target) or Edits(base=base)
+    own = Edits() if target.weights is None else Edits(base="file")
+    edits = stored_edits(target) or own
     every = np.arange(len(result.weights))
     content = painted(result.rig.skeleton, every, result.weights)
     edits, place = put_layer(edits, Layer(content, name=f"Transferred from {source}"))

@@ -88,10 +88,9 @@ class Choices(param.Parameterized):
         """The warnings about the character and its weights."""
         if self.graph is None:
             return []
-        of_binding = self.binding.warnings if self.binding else ()
         links = [
             WarningLink(text, getattr(text, "code", ""))
-            for text in (*self.rig.warnings, *of_binding)
+            for text in (*self.rig.warnings, *(self.binding_warnings or ()))
         ]
         return [
             replace(link, code=EXPORT + link.code) if link.code in OF_WEIGHTS else link

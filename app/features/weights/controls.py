@@ -15,6 +15,7 @@ from ...editing.select.bones import BONES
 from ...editing.select.controls import SELECTION, WEIGHT_SCALE
 from ...editing.symmetry.controls import PAIRS, SYMMETRY
 from ...editing.transfer.controls import TRANSFER
+from ...looks.weights import file_rows
 from ...widgets import controls as ui
 
 SHOWN = {
@@ -55,14 +56,12 @@ def summary(state: State) -> str:
     """Summarize the weights in a line."""
     if state.binding is None:
         return ""
-    weights = state.binding.weights
-    positive = np.flatnonzero(weights > 0)
-    text = f"{len(positive) / max(len(weights), 1):.1f} influences per vertex"
+    rows = state.binding.rows
+    vertices = max(rows.shape[0], 1)
+    text = f"{np.count_nonzero(rows.data) / vertices:.1f} influences per vertex"
     file_weights = state.rig.weights
-    if file_weights is not None and file_weights.shape == weights.shape:
-        # |a - b| = a + b - 2 min(a, b), and the minimum is zero wherever a is: nearly everywhere.
-        both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
-        difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
+    if file_weights is not None and file_weights.shape == rows.shape:
+        difference = abs(rows - file_rows(state)).sum() / 2 / vertices
         text += f", {100 * difference:.0f}% different from the file"
     return text + "."
 

@@ -26,13 +26,11 @@ export function boxOf(bounds) {
   return {size, middle: size.map((length, i) => bounds[2 * i] + length / 2)}
 }
 
-// A copy of numbers, some at a place, with others at some places.
-export function replaced(numbers, size, places, others) {
-  const made = numbers.slice()
+// Puts others in the place of numbers, some at a place, at some places.
+export function replace(numbers, size, places, others) {
   places.forEach((place, i) => {
-    for (let k = 0; k < size; k++) { made[size * place + k] = others[size * i + k] }
+    for (let k = 0; k < size; k++) { numbers[size * place + k] = others[size * i + k] }
   })
-  return made
 }
 
 // Whether it must be seen whole; bones may reach far out of the character, above all those that

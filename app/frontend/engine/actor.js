@@ -52,6 +52,7 @@ export class Actor {
     if (part.scalars) {
       this.colours.setValues(plain(part.scalars), plain(part.table), part.limits)
     }
+    if (part.repainted) { this.repaint(part.repainted) }
     if (part.materials) {
       this.materials = this.materials ?? new Materials(this.renderer.context)
       this.materials.set(part.materials)
@@ -80,6 +81,8 @@ export class Actor {
   /** Gives some vertices other weights than the server's last. @param {Painted} painted */
   repaint(painted) {
     this.colours.repaint(painted)
+    const values = this.reading?.values
+    painted.readings?.forEach((value, i) => { values[painted.vertices[i]] = value })
     this.reskin(painted)
   }
 

@@ -1,7 +1,7 @@
 // Colours of an actor's points on the graphics card: a value or a colour of each point is in
 // a texture. New ones are an upload of just these numbers; no buffer is built again.
 
-import {replaced} from "../common/shape.js"
+import {replace} from "../common/shape.js"
 import {FRAGMENT} from "./vtk_private.js"
 
 const TABLE_UNIT = 13  // vtk.js takes the first units
@@ -35,11 +35,12 @@ export class Colours {
 
   /** Gives some points others. @param {Painted} painted */
   repaint({vertices, colors, scalars}) {
-    if (this.by === "colors" && colors) {
-      this.setColors(replaced(this.colors, 3, vertices, colors))
-    } else if (this.by === "values" && scalars) {
-      this.setValues(replaced(this.values, 1, vertices, scalars))
-    }
+    const isColors = this.by === "colors"
+    const [numbers, others, size] = isColors ? [this.colors, colors, 3] : [this.values, scalars, 1]
+    if (!others || !this.points) { return }
+    replace(numbers, size, vertices, others)
+    const rows = new Set(Array.from(vertices, (place) => Math.floor(place / POINTS_WIDE)))
+    for (const row of rows) { this.points.putRow(row, numbers) }
   }
 
   putPoints(values, inside, format, type, size) {
@@ -81,6 +82,8 @@ export class Colours {
 export class PointTexture {
   /** @type {any} */
   data = null
+  /** @type {any} */
+  how = null
 
   /** @param {GL} gl @param {number} unit */
   constructor(gl, unit) {
@@ -97,10 +100,20 @@ export class PointTexture {
       this.data = new DataTexture(gl, this.unit, inside, POINTS_WIDE, rows, gl.NEAREST)
       this.shape = String([inside, rows])
     }
+    this.how = {count, format, type, size}
     const whole = Math.floor(count / POINTS_WIDE)
     const split = whole * POINTS_WIDE * size
     this.data.put(0, POINTS_WIDE, whole, format, type, values.subarray(0, split))
-    this.data.put(whole, count - whole * POINTS_WIDE, 1, format, type, values.subarray(split))
+    this.putRow(whole, values)
+  }
+
+  // One row of the same numbers as before, some of which are others now.
+  putRow(row, values) {
+    const {count, format, type, size} = this.how
+    const first = row * POINTS_WIDE
+    const end = Math.min(first + POINTS_WIDE, count)
+    const numbers = values.subarray(first * size, end * size)
+    this.data.put(row, end - first, 1, format, type, numbers)
   }
 
   // Lets a program read it, by the name of its uniform.

@@ -45,7 +45,7 @@ export class PaintBrush {
       this.stroke = null
       this.aimed = null
     }
-    this.changed()
+    this.draw()
   }
 
   get held() {
@@ -138,9 +138,11 @@ export class PaintBrush {
   painted(answer, actor) {
     this.awaited = false
     if (answer.gone) { this.stroke = null }
-    if (answer.vertices && actor) { actor.repaint(answer) }
+    if (answer.vertices && actor) {
+      actor.repaint(answer)
+      this.changed()
+    }
     this.say()
-    this.changed()
   }
 
   release(e) {
@@ -160,7 +162,7 @@ export class PaintBrush {
   aim(hit) {
     const normal = (of) => normalOf(of.actor.triangles, of.actor.posed(), of.triangle)
     this.aimed = hit && {at: hit.at, normal: normal(hit)}
-    this.changed()
+    this.draw()  // the ring alone: the scene is as it was
   }
 
   draw() {

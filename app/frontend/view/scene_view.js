@@ -24,6 +24,7 @@ import {Clip} from "../engine/skin.js"
 import {remember} from "../common/storage.js"
 import {Transport} from "./transport.js"
 
+const UNSEEN = new Set(["id", "address", "link", "able"])  // parts that no picture shows
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
 
 export class SceneView {
@@ -162,7 +163,11 @@ export class SceneView {
       this.surroundings.keys.able(message.able)
     }
     this.messages = message.id
-    this.changed()
+    if (Object.keys(message).some((name) => !UNSEEN.has(name))) {
+      this.changed()
+    } else if (!this.waiting) {
+      this.putAddress()
+    }
   }
 
   setCut(cut) {

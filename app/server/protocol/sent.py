@@ -136,12 +136,13 @@ class Apart(Skin):
 
 
 class Painted(TypedDict, total=False):
-    """What a stroke changed; `gone`: there is no stroke any more."""
+    """What a stroke changed of some vertices; `gone`: there is no stroke any more."""
 
     gone: bool
     vertices: NDArray[np.uint32]
     colors: Bytes
     scalars: Floats
+    readings: Floats
     joints: NDArray[np.uint16]
     weights: Floats
     count: int
@@ -208,6 +209,7 @@ class Part(TypedDict, total=False):
     visible: bool
     animation: bool
     reading: Reading | None
+    repainted: Painted
     clipped: bool
     slab: float
 

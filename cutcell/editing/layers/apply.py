@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from ...weights.prune import prune
 from .layer import Layer, Mode
+from .painted import Painted
 from .sources import RigSources, Which, vertices_of
 
 ROWS_TOGETHER = 1000
@@ -31,11 +32,50 @@ def apply_layers(
 
     Shapes: weights (n, j), which stay as they are; returns (n, j).
     """
-    result, is_own = weights, False
+    return _applied(weights, False, layers, sources, None, after)
+
+
+def apply_to_rows(
+    weights: NDArray[np.float64],
+    layers: Iterable[Layer],
+    sources: RigSources,
+    rows: NDArray[np.intp],
+) -> None:
+    """Apply layers to some rows (k,), ascending, of weights (n, j), in place.
+
+    Other rows are not read, so that no content may follow from several rows.
+    """
+    _applied(weights, True, layers, sources, rows, lambda layer, weights: None)
+
+
+def strength_of(
+    layer: Layer, component: Callable[[], NDArray[np.integer]], count: int
+) -> NDArray[np.float64]:
+    """Return how strongly a layer acts at each of `count` vertices; 0 where it cannot."""
+    strength = np.zeros(count)
+    if layer.is_active:
+        which, how = _masked(layer, component, count)
+        which = slice(None) if which is None else which
+        strength[which] = how if how.ndim == 0 else how[which]
+        if isinstance(layer.content, Painted):
+            strength *= np.bincount(layer.content.vertices, minlength=count)
+    return strength
+
+
+def _applied(
+    result: NDArray[np.float64],
+    is_own: bool,
+    layers: Iterable[Layer],
+    sources: RigSources,
+    within: Which,
+    after: Callable[[Layer, NDArray[np.float64]], None],
+) -> NDArray[np.float64]:
     for layer in layers:
         if not layer.is_active:
             continue
         which, strength = _masked(layer, sources.component, len(result))
+        if within is not None:
+            which = within if which is None else np.intersect1d(which, within, assume_unique=True)
         if layer.content.by_rows and not is_own:
             result, is_own = result.copy(), True
         for part in _blocks(which, result) if layer.content.by_rows else [which]:

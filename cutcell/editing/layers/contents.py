@@ -30,6 +30,8 @@ class Content:
     """Fields that name joints: mappings of them, or lists."""
     by_rows: ClassVar[bool] = False
     """Whether each row follows from the one below it: some are made at a time, to save memory."""
+    reads_others: ClassVar[bool] = False
+    """Whether a row follows from others below it, too."""
 
     def to_data(self) -> dict[str, Any]:
         """Return the fields that differ from their defaults, as JSON."""
@@ -146,6 +148,7 @@ class Attached(Content):
 
     kind = "attached"
     title = "With the body"
+    reads_others = True
 
 
 @dataclass(frozen=True)
@@ -165,6 +168,7 @@ class Smoothed(Content):
 
     kind = "smoothed"
     title = "Smoothed"
+    reads_others = True
 
     def __post_init__(self) -> None:
         assign(self, steps=check_integer("steps", self.steps, 1, MAX_STEPS))
@@ -186,6 +190,7 @@ class Mirrored(Content):
 
     kind = "mirrored"
     title = "Mirrored"
+    reads_others = True
 
     def __post_init__(self) -> None:
         check_choice("side", self.side, ("both", "left", "right"))

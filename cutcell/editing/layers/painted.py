@@ -79,6 +79,17 @@ class Painted(ByValue, Content):
         rows = csr_array(vstack([parts[0][rest], parts[1]], format="csr"))
         return Painted(vertices[order], names, rows[order])
 
+    def differing(self, other: Painted) -> NDArray[np.int32]:
+        """Return the vertices, ascending, whose rows differ from those of another one."""
+        names = tuple(dict.fromkeys((*self.joints, *other.joints)))
+        both, mine, others = np.intersect1d(
+            self.vertices, other.vertices, assume_unique=True, return_indices=True
+        )
+        rows = self._in_columns(self.joints, names)[mine]
+        changed = rows != other._in_columns(other.joints, names)[others]
+        single = np.setxor1d(self.vertices, other.vertices, assume_unique=True)
+        return np.union1d(both[np.diff(changed.tocsr().indptr) > 0], single)
+
     def _in_columns(self, joints: Sequence[str | None], names: Sequence[str]) -> csr_array:
         """Return the rows with columns for other names; joints is None for those left out."""
         column = {name: k for k, name in enumerate(names)}

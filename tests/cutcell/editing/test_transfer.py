@@ -250,6 +250,15 @@ def test_a_rig_lies_where_it_is_in_the_scene(body, mirrored):
     np.testing.assert_allclose(result.rig.skeleton.orientations, world[:3, :3] / 100 @ axes)
 
 
+def test_a_skeleton_in_another_pose_does_not_move_its_mesh(body):
+    """Clothes with the body's joints, that stand elsewhere in the scene of their file."""
+    target, world = dressed(body), np.eye(4)
+    world[0, 3] = 0.3
+    expected = cutcell.transfer(body, target)
+    result = cutcell.transfer(body, replace(target, world=world))
+    np.testing.assert_array_equal(result.weights, expected.weights)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_order_of_vertices_and_faces_changes_nothing(seed):
     rng = np.random.default_rng(seed)

@@ -121,7 +121,8 @@ def _inputs(state: State) -> tuple[Any, ...] | None:
         return None
     names = pair_of(state)
     first, second = (_source(state, name) for name in names)
-    if any(one is None or one.weights is None for one in (first, second)):
+    if any(one is None or (one is not state.binding and one.weights is None)
+           for one in (first, second)):  # fmt: skip
         return None
     return state.rig, state.binding.distances, first, second, names
 

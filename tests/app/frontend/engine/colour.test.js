@@ -38,6 +38,21 @@ test("new values of as many points are put into the same texture", () => {
   assert.notEqual(colours.points.data, data)
 })
 
+test("of a few points only the rows of the texture that have them are put again", () => {
+  const {gl, puts} = card()
+  const colours = new Colours(gl)
+  colours.setValues(new Float32Array(3 * 2048 + 5), new Uint8Array(3 * 16), [0, 1])
+  puts.length = 0
+  const vertices = Uint32Array.of(2048, 2050, 3 * 2048 + 4)
+  colours.repaint({vertices, scalars: Float32Array.of(0.25, 0.5, 0.75)})
+  assert.deepEqual(puts.map(({row, size}) => [row, size]), [[1, [2048, 1]], [3, [5, 1]]])
+  assert.deepEqual([...puts[0].values.subarray(0, 3)], [0.25, 0, 0.5])
+  assert.equal(colours.values[3 * 2048 + 4], 0.75)
+  puts.length = 0
+  colours.repaint({vertices, colors: new Uint8Array(9)})
+  assert.equal(puts.length, 0, "values are shown, not colours")
+})
+
 test("corners know their points", () => {
   assert.deepEqual([...pointIds(4)], [0, 1, 2, 3])
 })

@@ -45,6 +45,10 @@ test("a fast pointer leaves nothing out, and ends where it is", () => {
   assert.equal(between([0, 0], [1e6, 0], 1).length, 60)
 })
 
+const RENDERER = {
+  project: ([x, y]) => [x, y, 1], projection: () => ([x, y]) => [x, y, 1], pixel: () => 1,
+}
+
 // A brush over a canvas whose left half shows a triangle that fills it.
 function brush() {
   globalThis.document = {
@@ -59,10 +63,12 @@ function brush() {
   const overlay = {canvas, root: {append() {}}, showPainting: (on) => shown.push(on), showBone() {}}
   const actor = {triangles: TRIANGLES, posed: () => POINTS, repaint: (what) => coloured.push(what)}
   const [told, handed, coloured] = [[], [], []]
-  const made = new PaintBrush(overlay, {project: ([x, y]) => [x, y, 1], pixel: () => 1}, {
+  const made = new PaintBrush(overlay, RENDERER, {
     bodyAt: (x, y) => x < 100 ? {actor, triangle: 1, at: [x / 100, y / 100, 0]} : null,
-    handOver: (...what) => handed.push(what), changed() {}, tell: (message) => told.push(message),
+    handOver: (...what) => handed.push(what), changed: () => { made.drawn += 1 },
+    tell: (message) => told.push(message),
   })
+  made.drawn = 0
   const send = (type, x, y, more) => {
     const e = {pointerId: 1, clientX: x, clientY: y, button: 0, buttons: 1, taken: false, ...more}
     Object.assign(e, {preventDefault() {}, stopImmediatePropagation() { e.taken = true }})
@@ -98,6 +104,18 @@ test("a stroke is told in pieces, one after the other, and ends", () => {
   made.painted({vertices: [1], scalars: [0.6]}, actor)
   made.painted({vertices: [1], scalars: [0.6]}, actor)
   assert.equal(told.length, 3)
+})
+
+test("the scene is drawn again only when colours have come", () => {
+  const {made, actor, send} = brush()
+  made.show(ON)
+  send("pointermove", 5, 10, {buttons: 0})
+  send("pointerdown", 10, 10)
+  send("pointermove", 40, 10)
+  made.painted({}, actor)
+  assert.equal(made.drawn, 0, "the ring is no part of it")
+  made.painted({vertices: [1], scalars: [0.5]}, actor)
+  assert.equal(made.drawn, 1)
 })
 
 test("beside the body, with other buttons and with Alt the camera has the pointer", () => {
