@@ -100,8 +100,8 @@ def weight_colors(
 def columns_of(weights: ArrayLike | csr_array, columns: ArrayLike) -> NDArray[np.float64]:
     """Return the weights of some joints as an array (n, c); weights (n, j) may be sparse."""
     if isinstance(weights, csr_array):
-        return np.asarray(weights[:, columns].toarray())
-    return np.asarray(weights)[:, columns]
+        return np.asarray(weights[:, np.asarray(columns)].toarray())
+    return np.asarray(weights)[:, np.asarray(columns)]
 
 
 def _mixed(rig: Rig, weights: csr_array) -> NDArray[np.float64]:

@@ -108,8 +108,9 @@ def put(state: Any, **values: Any) -> None:
     rig, edits = changed.get("rig", state.rig), parts[-1]
     if state.rig is not None and not same_structure(state.rig, rig):
         changed = {**_following(state, rig), **changed, "moved": None}
-    if state.layer is not None and state.layer >= len(edits.layers):
-        changed = {"layer": None, **changed}
+    layer = changed.get("layer", state.layer)
+    if layer is not None and layer >= len(edits.layers):
+        changed["layer"] = None
     state.param.update(**changed)
 
 

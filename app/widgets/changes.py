@@ -84,34 +84,35 @@ def repainted(old: Actor, new: Actor, share: float = 1.0) -> tuple[dict[str, Any
         old = replace(old, skin=new.skin)
     if "readings" in pairs:
         old = replace(old, reading=new.reading)
-    return message, replace(
-        old, **{name: pairs[name][1] for name in ("colors", "scalars") if name in pairs}
-    )
+    fields: dict[str, Any] = {n: pairs[n][1] for n in ("colors", "scalars") if n in pairs}
+    return message, replace(old, **fields)
 
 
 def painted(actor: Actor, rows: Mapping[str, Any]) -> Actor:
     """Return an actor with other colours and influences of some points, as in a message."""
-    which, fields = rows["vertices"], {}
+    which, fields = rows["vertices"], dict[str, Any]()
     for name in ("colors", "scalars"):
         before = getattr(actor, name)
         if name in rows and before is not None:
-            fields[name] = _with_rows(before, which, rows[name].reshape(-1, *before.shape[1:]))
+            fields[name] = _with_rows(before, which, rows[name])
     if "joints" in rows and actor.skin is not None:
         skin = actor.skin
-        others = (rows[name].reshape(len(which), -1) for name in ("joints", "weights"))
-        pairs = zip((skin.joints, skin.weights), others, strict=True)
-        fields["skin"] = Skin(*(_with_rows(before, which, other) for before, other in pairs))
+        fields["skin"] = Skin(
+            _with_rows(skin.joints, which, rows["joints"]),
+            _with_rows(skin.weights, which, rows["weights"]),
+        )
     return replace(actor, **fields)
 
 
 def _with_rows(array: NDArray, which: NDArray, rows: NDArray) -> NDArray:
     """Return a copy with other rows at some places; the narrower of both is filled with zeros."""
-    width = max(array.shape[1:], rows.shape[1:])
-    result = np.zeros((len(array), *width), array.dtype)
-    result[:, *(slice(size) for size in array.shape[1:])] = array
+    before, others = array.reshape(len(array), -1), rows.reshape(len(which), -1)
+    width = max(before.shape[1], others.shape[1])
+    result: NDArray = np.zeros((len(array), width), array.dtype)
+    result[:, : before.shape[1]] = before
     result[which] = 0
-    result[which, *(slice(size) for size in rows.shape[1:])] = rows
-    return result
+    result[which, : others.shape[1]] = others
+    return result.reshape(array.shape[:1] + (width,) * (array.ndim - 1))
 
 
 def _fit(a: NDArray | None, b: NDArray | None) -> bool:

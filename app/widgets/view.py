@@ -110,7 +110,7 @@ class SceneView(JSComponent):
         body = self._sent.actors.get("body")
         rows = message.get("painted")
         if rows is not None and "vertices" in rows and body is not None:
-            after = painted(body, rows)
+            after = painted(body, rows) if len(rows["vertices"]) else body
             self._sent = replace(self._sent, actors={**self._sent.actors, "body": after})
             message["painted"] = cast(Painted, repainted(body, after)[0])
         self._send_msg(message)

@@ -88,7 +88,11 @@ def recompute(
 
 
 def layered(
-    rig: Rig, binding: Binding, edits: Edits, recomputed: Mapping[str, Recomputed], memo: Memo
+    rig: Rig,
+    binding: Binding,
+    edits: Edits,
+    recomputed: Mapping[str, Recomputed | None],
+    memo: Memo | None = None,
 ) -> Binding:
     """Return a binding with layers over its weights.
 
@@ -108,5 +112,5 @@ def layered(
 
     sources = RigSources(rig, few, binding.graph, computed)
     inputs = rig, binding, *(one for pair in sorted(recomputed.items()) for one in pair)
-    stacked = memo("stacked", inputs, lambda: StackedRows(binding.rows, sources))
+    stacked = (memo or Memo())("stacked", inputs, lambda: StackedRows(binding.rows, sources))
     return replace(binding, rows=stacked.rows(edits.stack()))

@@ -122,7 +122,7 @@ class Selected:
         return np.where(can[:, None], self.finished(rows, [joint]), self.rows)
 
 
-def rows_at(weights: Any, vertices: NDArray[np.integer]) -> NDArray[np.float64]:
+def rows_at(weights: Any, vertices: NDArray[Any]) -> NDArray[np.float64]:
     """Return the weights of some vertices, (v, j), as an array; those of all may be sparse."""
     rows = weights[vertices]
     return np.asarray(rows.toarray() if isinstance(rows, csr_array) else rows)

@@ -191,7 +191,7 @@ class Stroke:
 
     def continued(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return what `painted` returns, of the vertices that changed since the last call."""
-        nearer = (self._distance < self._before).any(axis=0)
+        nearer = np.asarray((self._distance < self._before).any(axis=0))
         self._before = self._distance.copy()
         vertices = self.touched()
         if self._brush.mode != "smooth":  # which spreads over all that is touched

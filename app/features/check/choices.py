@@ -54,7 +54,7 @@ class Choices(param.Parameterized):
     """The findings, and which of them is looked at."""
 
     if TYPE_CHECKING:
-        binding: Any
+        binding_warnings: Any
         edits: Edits
         graph: Any
         rig: Any

@@ -17,7 +17,7 @@ from cutcell_viewers.skin import Blending, Skin
 from ...looks.pose import saved_pose
 
 SHORTEST = 1e-3
-"""Length that shorter edges count as, as part of the longest side: what they do is not seen."""
+"""Least length of an edge at rest, as part of the longest side: others are too short to be seen."""
 
 Poses = Mapping[str, SavedPose]
 Key = str | int

@@ -6,7 +6,7 @@ import {Materials} from "./materials.js"
 import {shaderSwaps} from "./shade.js"
 import {skinArrays, skinned, withRows} from "./skin.js"
 import {Strokes} from "./strokes.js"
-import {boundsOf, withCounts} from "../common/shape.js"
+import {boundsOf, replace, withCounts} from "../common/shape.js"
 import {TriangleTree} from "./triangle_tree.js"
 import {along} from "../common/vectors.js"
 import {beforeDrawing, changeShaders, pushBack} from "./vtk_private.js"
@@ -81,8 +81,9 @@ export class Actor {
   /** Gives some vertices other weights than the server's last. @param {Painted} painted */
   repaint(painted) {
     this.colours.repaint(painted)
+    const {vertices, readings} = painted
     const values = this.reading?.values
-    painted.readings?.forEach((value, i) => { values[painted.vertices[i]] = value })
+    if (values && vertices && readings) { replace(values, 1, vertices, readings) }
     this.reskin(painted)
   }
 

@@ -37,7 +37,7 @@ export class Colours {
   repaint({vertices, colors, scalars}) {
     const isColors = this.by === "colors"
     const [numbers, others, size] = isColors ? [this.colors, colors, 3] : [this.values, scalars, 1]
-    if (!others || !this.points) { return }
+    if (!vertices || !others || !this.points) { return }
     replace(numbers, size, vertices, others)
     const rows = new Set(Array.from(vertices, (place) => Math.floor(place / POINTS_WIDE)))
     for (const row of rows) { this.points.putRow(row, numbers) }

@@ -163,6 +163,12 @@ export class Renderer {
     gl.clear(gl.COLOR_BUFFER_BIT)
   }
 
+  // Takes halfway between the colours of the background, as a style sheet writes them, for haze.
+  fadeInto({top, bottom}) {
+    const part = (color, i) => parseInt(color.slice(i, i + 2), 16)
+    this.haze = [1, 3, 5].map((i) => (part(top, i) + part(bottom, i)) / 510)
+  }
+
   // Whether the camera is well outside all actors, in any pose.
   isOutside() {
     const {size, middle} = boxOf(this.bounds())

@@ -106,7 +106,7 @@ export class SceneView {
     if (message.lights) { renderer.light(message.lights) }
     if (message.theme) {
       this.overlay.theme(message.theme)
-      renderer.haze = between(message.theme.top, message.theme.bottom)
+      renderer.fadeInto(message.theme)
     }
     if ("dark" in message) { remember("cutcell dark", message.dark ? "1" : "0") }
     if (message.legend !== undefined) { this.overlay.showLegend(message.legend) }
@@ -163,11 +163,8 @@ export class SceneView {
       this.surroundings.keys.able(message.able)
     }
     this.messages = message.id
-    if (Object.keys(message).some((name) => !UNSEEN.has(name))) {
-      this.changed()
-    } else if (!this.waiting) {
-      this.putAddress()
-    }
+    const isSeen = Object.keys(message).some((name) => !UNSEEN.has(name))
+    if (isSeen) { this.changed() } else if (!this.waiting) { this.putAddress() }
   }
 
   setCut(cut) {
@@ -245,7 +242,12 @@ export class SceneView {
     }
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (!moving) { this.rendered.rest(() => this.frame) }
-    if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
+    if (this.renderer.rough && !moving) { this.calmDown() }
+  }
+
+  // During a stroke the next colours would wait for the picture in full.
+  calmDown() {
+    this.calming = setTimeout(() => this.brush.held ? this.calmDown() : this.draw(true), CALM)
   }
 
   // The camera and the tiles of what is seen.
@@ -290,10 +292,4 @@ function save({name, content}) {
   link.href = URL.createObjectURL(new Blob([content]))
   link.click()
   setTimeout(() => URL.revokeObjectURL(link.href), 60000)
-}
-
-// Halfway between two colours as a style sheet writes them, from 0 to 1.
-function between(a, b) {
-  const part = (color, i) => parseInt(color.slice(i, i + 2), 16)
-  return [1, 3, 5].map((i) => (part(a, i) + part(b, i)) / 510)
 }

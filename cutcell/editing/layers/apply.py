@@ -55,8 +55,8 @@ def strength_of(
     strength = np.zeros(count)
     if layer.is_active:
         which, how = _masked(layer, component, count)
-        which = slice(None) if which is None else which
-        strength[which] = how if how.ndim == 0 else how[which]
+        vertices: Any = slice(None) if which is None else which
+        strength[vertices] = how if how.ndim == 0 else how[vertices]
         if isinstance(layer.content, Painted):
             strength *= np.bincount(layer.content.vertices, minlength=count)
     return strength
