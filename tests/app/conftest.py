@@ -106,9 +106,9 @@ def url(small_path: Path) -> Iterator[str]:
         yield url
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def open_visits() -> Iterator[list[Visit]]:
-    """Keep the page of `visit` from test to test."""
+    """Keep the page of `visit` for the tests of a file, whose order never changes."""
     visits: list[Visit] = []
     yield visits
     for visit in visits:
@@ -119,7 +119,7 @@ def open_visits() -> Iterator[list[Visit]]:
 def visit(browser: Browser, url: str, open_visits: list[Visit]) -> Iterator[Visit]:
     """Show the small figure, bound, on the panel Weights, with nothing else chosen.
 
-    It is the page of the test before, where that can be brought back to its beginning.
+    It is the page of the test before in the file, where that can be brought back to its beginning.
     """
     visit = open_visits.pop() if open_visits else None
     if visit is not None and not visit.begin_anew():
