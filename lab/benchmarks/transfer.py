@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.editing.transfer.inpainting import inpaint
-from cutcell.errors import CutcellError
 from cutcell.rig import Rig, TriangleMesh
 
 from ..metrics import deformation_error
@@ -64,15 +63,16 @@ def part_of(rig: Rig, which: str | int) -> Rig:
         chosen[slices[which]] = True
     else:
         chosen = rig.mesh.welded.component[rig.mesh.welded.index] == which
-    return vertices_of(rig, chosen)
+    mesh, weights = taken(rig, chosen)
+    return Rig(mesh, rig.skeleton, weights)
 
 
-def vertices_of(rig: Rig, chosen: NDArray[np.bool_]) -> Rig:
-    """Return some vertices (n,) of a rig, with the faces between them, as a rig by itself."""
+def taken(rig: Rig, chosen: NDArray[np.bool_]) -> tuple[TriangleMesh, NDArray[np.float64]]:
+    """Return some vertices (n,) of a rig, with the faces between them, and their weights."""
     number = np.cumsum(chosen) - 1
     faces = number[rig.mesh.faces[chosen[rig.mesh.faces].all(axis=1)]]
     assert rig.weights is not None
-    return Rig(TriangleMesh(rig.mesh.vertices[chosen], faces), rig.skeleton, rig.weights[chosen])
+    return TriangleMesh(rig.mesh.vertices[chosen], faces), rig.weights[chosen]
 
 
 def closest(body: Rig, mesh: TriangleMesh) -> tuple[NDArray, NDArray, NDArray]:
@@ -122,17 +122,16 @@ def garments() -> Iterator[tuple[str, str, int, list[float]]]:
         source = part_of(rig, body)
         for name in worn:
             one = part_of(rig, name)
-            yield Path(file).stem, str(name), len(one.mesh.vertices), errors(source, one)
+            assert one.weights is not None
+            result = errors(source, one.mesh, one.weights)
+            yield Path(file).stem, str(name), len(one.mesh.vertices), result
 
 
-def errors(source: Rig, garment: Rig) -> list[float]:
-    """Return the error of each method."""
-    assert garment.weights is not None
+def errors(source: Rig, mesh: TriangleMesh, made: NDArray[np.float64]) -> list[float]:
+    """Return the error of each method against the maker's weights."""
     ways: tuple[Callable[[Rig, TriangleMesh], NDArray], ...] = (nearest, plain, transferred)
-    return [
-        deformation_error(garment, way(source, garment.mesh), garment.weights, joints="all").mean
-        for way in ways
-    ]
+    one = mesh, source.skeleton
+    return [deformation_error(one, way(source, mesh), made, joints="all").mean for way in ways]
 
 
 def components() -> Iterator[tuple[str, list[float]]]:
@@ -150,15 +149,13 @@ def components() -> Iterator[tuple[str, list[float]]]:
             is_garment = MIN_VERTICES <= counts[component] <= len(welded.points) / 2
             if number == PARTS or not (is_garment and weighted[worn].all()):
                 continue
-            try:
-                garment, source = vertices_of(rig, worn), vertices_of(rig, ~worn & weighted)
-                if np.median(closest(source, garment.mesh)[2]) > 0.05 * diagonal:
-                    continue
-                result = errors(source, garment)
-            except CutcellError as error:  # a button is too small for its skeleton
-                print(f"{name}, component {component}: {error}", flush=True)
+            mesh, made = taken(rig, worn)
+            rest, weights = taken(rig, ~worn & weighted)
+            source = Rig(rest, rig.skeleton, weights)
+            if np.median(closest(source, mesh)[2]) > 0.05 * diagonal:
                 continue
             number += 1
+            result = errors(source, mesh, made)
             print(name, component, *result, flush=True)
             yield name, result
 

@@ -187,7 +187,7 @@ def test_a_cancelled_upload_leaves_all_as_it_was(visit, tmp_path):
     points = len(visit.points())
     visit.drop(big)
     visit.expect_text(re.compile(r"Sending big\.glb"))
-    visit.page.locator("label + button", has_text="Cancel").click()
+    visit.page.locator("label + button", has_text="Cancel").filter(visible=True).click()
     visit.page.get_by_text("Drop a character here").wait_for()
     visit.page.wait_for_function("!document.body.innerText.includes('Sending')")
     assert len(visit.points()) == points

@@ -74,11 +74,11 @@ def test_of_a_few_other_weights_only_these_are_sent(scene, rig, joint):
     assert set(body) == {"repainted"}
     rows, shown = body["repainted"], few.actors["body"]
     assert set(rows["vertices"]) <= set(range(count - 3, count))
-    known = painted(before.actors["body"], rows)
-    np.testing.assert_array_equal(known.skin.joints, shown.skin.joints)
-    np.testing.assert_array_equal(known.skin.weights, shown.skin.weights)
-    np.testing.assert_array_equal(known.scalars, shown.scalars)
-    np.testing.assert_array_equal(known.colors, shown.colors)
+    shown_before = painted(before.actors["body"], rows)
+    np.testing.assert_array_equal(shown_before.skin.joints, shown.skin.joints)
+    np.testing.assert_array_equal(shown_before.skin.weights, shown.skin.weights)
+    np.testing.assert_array_equal(shown_before.scalars, shown.scalars)
+    np.testing.assert_array_equal(shown_before.colors, shown.colors)
     if joint is None:
         np.testing.assert_array_equal(rows["readings"], shown.reading.values[rows["vertices"]])
     assert "repainted" not in changes(before, many, set(before.actors))["actors"]["body"]

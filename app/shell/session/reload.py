@@ -1,4 +1,4 @@
-"""Reload of a page: the next page goes on with its history, selection and tools.
+"""Reload of a page: the next page continues its history, selection and tools.
 
 Each page has a key that cannot be guessed, and its browser's tab stores it. A page that is loaded
 again sends the key of the page before, and begins with a copy of what that page has, or had when
@@ -31,9 +31,9 @@ from ...document.state import State
 from ...files.upload_cache import KEPT_SECONDS, MB
 
 MAX_OF_A_PAGE = 32 * MB
-"""Memory of what a page that has ended leaves; of a longer history the newest steps stay."""
+"""Memory of the handover of a page that has ended; a longer history keeps its newest steps."""
 MAX_BYTES = 256 * MB
-"""Memory of what all pages leave that have ended."""
+"""Memory of all of these together."""
 
 GONE = "The undo history and the selection of this page are no longer on the server."
 CHANGED = "The file has changed, so its undo history and its selection were dropped."
@@ -44,7 +44,7 @@ PLAIN = (param.Boolean, param.Selector, param.Number, param.String)
 
 @dataclass(frozen=True)
 class Handover:
-    """What the next page takes over from a page, besides its address.
+    """State that the next page takes over from a page, besides its address.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _contents(own: Rig) -> tuple[Any, ...]:
 
 @dataclass
 class _Ended:
-    """What a page left: a pickle, and the arrays in it, which stay where they are in memory."""
+    """Handover of a page that has ended: a pickle, and its arrays, which are not copied."""
 
     pickled: bytes
     arrays: list[pickle.PickleBuffer]
@@ -126,7 +126,7 @@ class _Ended:
 
 
 class Pages:
-    """The pages that a reload can go on with: those that are open, and those that ended lately."""
+    """The pages that a reload can continue: those that are open, and those that ended lately."""
 
     def __init__(
         self,
@@ -141,7 +141,7 @@ class Pages:
 
     @property
     def size(self) -> int:
-        """Bytes of what pages have left that have ended."""
+        """Bytes of all handovers of pages that have ended."""
         return sum(one.size for one in self._ended.values())
 
     def enter(self, session: Session) -> str:
@@ -149,12 +149,12 @@ class Pages:
         key = secrets.token_urlsafe(16)
         with self._lock:
             self._open[key] = session
-        # Before, a page that is loaded again goes on with the same one as this page.
+        # Until then its tab names the page that this one continues.
         session.state.param.watch(lambda event: session.view.send(page=key), "own")
         return key
 
     def leave(self, key: str) -> None:
-        """Keep what a page leaves that is about to end, the newest steps if it is large."""
+        """Store the handover of a page that is about to end; the newest steps if it is large."""
         with self._lock:
             session = self._open.pop(key, None)
             handover = None if session is None else handover_of(session)
@@ -168,7 +168,7 @@ class Pages:
             self._sweep()
 
     def find(self, key: str) -> Handover | None:
-        """Return a copy of what a page has, or had when it ended; None if there is nothing left."""
+        """Return a copy of the handover of a page; None if it is not stored any more."""
         with self._lock:
             self._sweep()
             session, ended = self._open.get(key), self._ended.get(key)
@@ -181,12 +181,12 @@ class Pages:
             return handover
 
     def sweep(self) -> None:
-        """Remove what is old."""
+        """Remove old handovers."""
         with self._lock:
             self._sweep()
 
     def _sweep(self) -> None:
-        """Remove what is old, and make room: first what was taken over, then the oldest."""
+        """Remove old handovers; beyond the limit first those that were taken, then the oldest."""
         old = time.monotonic() - self._seconds
         self._ended = {key: one for key, one in self._ended.items() if one.ended > old}
         size = self.size
@@ -209,7 +209,7 @@ def _packed(handover: Handover) -> _Ended:
 
 
 def arrive(session: Session, query: str, first: Request, pages: Pages = PAGES) -> None:
-    """Open what an address says, and go on with the page before where that showed the same."""
+    """Open what an address says, and continue the page before where it showed the same."""
     key, request = session.view.page_before, loading.arrival(session, query, first)
     handover = pages.find(key) if key else None
     if handover is not None and handover.shows(request):

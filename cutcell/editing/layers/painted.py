@@ -82,11 +82,11 @@ class Painted(ByValue, Content):
     def differing(self, other: Painted) -> NDArray[np.int32]:
         """Return the vertices, ascending, whose rows differ from those of another one."""
         names = tuple(dict.fromkeys((*self.joints, *other.joints)))
-        both, mine, others = np.intersect1d(
+        both, at, at_other = np.intersect1d(
             self.vertices, other.vertices, assume_unique=True, return_indices=True
         )
-        rows = self._in_columns(self.joints, names)[mine]
-        changed = rows != other._in_columns(other.joints, names)[others]
+        rows = self._in_columns(self.joints, names)[at]
+        changed = rows != other._in_columns(other.joints, names)[at_other]
         single = np.setxor1d(self.vertices, other.vertices, assume_unique=True)
         return np.union1d(both[np.diff(changed.tocsr().indptr) > 0], single)
 

@@ -15,8 +15,9 @@ from ...runtime.progress import Progress
 from .closest import Surface
 from .through import alternatives, landmark_distances, resolve
 
-NEAR = 0.3
-"""Part of the greatest distance within which normals need not agree."""
+NEAR, TOUCHING = 0.3, 0.05
+"""Parts of the greatest distance within which normals need not agree: the first if they agree on at
+least half of the component, like those of thick cloth with an inside and hems, else the second."""
 RESOLUTION = 64
 """Of the graph that distances through the body are measured in."""
 SAMPLES_PER_RADIUS = 8
@@ -68,17 +69,21 @@ def match(
     place = landmark_distances(graph, graph.vertex_node[mesh.first], weighted)
     surface = Surface(mesh, faces, max(radius, MIN_SAMPLED) / SAMPLES_PER_RADIUS)
     closest = surface.nearest(points)
-    near = NEAR * radius
-    every = alternatives(surface, points, closest, place, radius, near)
+    every = alternatives(surface, points, closest, place, radius, NEAR * radius)
     choice, resolved = resolve(
         every, surface.at(place, every), surface.at(surface.mesh.points, every), welded, radius
     )
     chosen = every.subset(choice)
     cosine = float(np.cos(np.radians(angle)))
-    fits = _agree(surface.at(mesh.normals, chosen), welded.normals, cosine, flipped)
-    matched = (chosen.distance <= radius) & (fits | (chosen.distance <= near))
-    has_match = np.bincount(welded.component, matched, welded.component.max() + 1) > 0
-    state = np.where(matched, 0, np.where(has_match[welded.component], 1, 2)).astype(np.uint8)
+    fits = chosen.distance <= radius
+    fits &= _agree(surface.at(mesh.normals, chosen), welded.normals, cosine, flipped)
+    component = welded.component
+    fitting = np.bincount(component, welded.areas * fits)
+    is_along = fitting >= (0.5 - TIE) * np.bincount(component, welded.areas)
+    near = np.where(is_along, NEAR, TOUCHING)[component] * radius
+    matched = fits | (chosen.distance <= near)
+    has_match = np.bincount(component, matched) > 0
+    state = np.where(matched, 0, np.where(has_match[component], 1, 2)).astype(np.uint8)
     away = chosen.distance * cube.size
     return Matches(surface.at(rows, chosen), state, away, resolved)
 

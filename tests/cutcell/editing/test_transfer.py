@@ -157,6 +157,21 @@ def test_normals_count_where_fabric_is_not_on_the_skin(body):
     assert states["flipped"][0] == MATCHED
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_most_of_a_component_decides_whether_normals_count_near_the_skin(body, turned):
+    """A sheet whose end is folded under it is thick cloth; turned over, it only lies there."""
+    flat = sheet(0, 29)
+    along = 1.4 * flat.vertices[:, 0]
+    under = along > 1
+    x = np.where(under, 2 - along, along) * 0.8 + 0.1
+    z = 0.5 * flat.vertices[:, 2] + 0.05
+    points = np.stack([x, np.where(under, 0.206, 0.21), z], axis=1)
+    cloth = TriangleMesh(points, flat.faces[:, ::-1] if turned else flat.faces)
+    state = cutcell.transfer(body, cloth).state
+    assert (state[under & (x < 0.85)] == MATCHED).all()
+    assert (state[along < 0.9] == (INPAINTED if turned else MATCHED)).all()
+
+
 @pytest.mark.parametrize(
     ("end", "above", "rigid"), [(0.9, 0.02, 1.0), (0.5, 0.02, 0.0), (0.9, 0.001, 0.0)]
 )
