@@ -1,6 +1,7 @@
 """No panel has a fault for people who use a keyboard or a screen reader."""
 
 import re
+from urllib.parse import parse_qs
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -88,6 +89,45 @@ def test_a_panel_has_no_fault(visit, title):
 def test_menus_have_no_fault(visit, title, names):
     choose(visit, title)
     assert faults_of_menus(visit, names) == []
+
+
+FOCUSED = "item => item === item.getRootNode().activeElement"
+
+
+def take_by_keys(visit, menu, name):
+    """Open a menu and take an item by keys alone; return the faults of the open menu."""
+    keyboard, items = visit.page.keyboard, visit.page.get_by_role("menuitem")
+    visit.reach(visit.button(menu)).focus()
+    keyboard.press("Enter")
+    item = items.get_by_text(name, exact=True)
+    item.wait_for()
+    reports = [f"menu {menu}: {fault}" for fault in faults(visit, besides=OVER)]
+    for _ in range(items.count()):
+        if items.filter(has_text=name).first.evaluate(FOCUSED):
+            break
+        keyboard.press("ArrowDown")
+    keyboard.press("Enter")
+    expect(visit.page.get_by_role("menu")).to_have_count(0)
+    visit.settle()
+    visit.unfold()
+    return reports
+
+
+def test_masks_of_layers_need_no_mouse_and_have_no_fault(visit):
+    choose(visit, "Weights")
+    reports = take_by_keys(visit, "Select by", "All")
+    reports += take_by_keys(visit, "Add layer", "From file")
+    before = parse_qs(visit.address[1:])["edits"]
+    reports += take_by_keys(visit, "Mask", "Invert")
+    assert parse_qs(visit.address[1:])["edits"] != before
+    reports += faults(visit)
+    visit.page.keyboard.press("Control+z")
+    assert parse_qs(visit.address[1:])["edits"] == before
+    visit.page.set_viewport_size({"width": 390, "height": 844})
+    visit.settle()
+    reports += [f"narrow: {fault}" for fault in faults(visit)]
+    visit.page.set_viewport_size({"width": 1100, "height": 720})
+    assert reports == []
 
 
 def test_the_list_of_keys_has_no_fault(visit):
