@@ -137,19 +137,21 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, small):
     np.testing.assert_allclose(visit.points(), rest, atol=1e-6)
 
 
+HAS_MOVED = """(before) => __cutcell.renderer.actors.get("body").posed()
+  .some((place, at) => Math.abs(place - before[at]) > 0.02)"""
+
+
 def play(visit):
-    """Let the motion run for a while."""
-    begin = visit.report()["time"]
+    """Let the motion run until the body has moved from where it is now."""
+    before = visit.points().ravel().tolist()
     visit.page.get_by_role("button", name="Play", exact=True).click()
-    visit.page.wait_for_function("begin => __cutcell.report().time > begin + 0.4", arg=begin)
+    visit.page.wait_for_function(HAS_MOVED, arg=before)
 
 
 def test_the_motion_plays_and_halts(visit):
     visit.panel("Pose")
     rest = visit.points()
     play(visit)
-    moving = visit.points()
-    assert np.abs(moving - rest).max() > 0.01
     visit.page.get_by_role("button", name="Pause", exact=True).click()
     visit.page.wait_for_function("!__cutcell.report().playing")
     visit.settle()
@@ -160,7 +162,6 @@ def test_the_motion_plays_and_halts(visit):
     np.testing.assert_array_equal(visit.points(), halted)
     visit.choose("Motion", "Swing the bone")
     play(visit)
-    assert np.abs(visit.points() - halted).max() > 1e-3
     visit.button("Rest pose").click()
     visit.page.wait_for_function("!__cutcell.report().playing")
     visit.settle()
