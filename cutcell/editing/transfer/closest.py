@@ -73,6 +73,10 @@ class Surface:
             share = np.stack([1 - i - j, i, j], axis=1)
             face.append(np.repeat(which, len(share)))
             places.append((share @ self.corners[which]).reshape(-1, 3))
+        # A vertex of large faces among many small ones is closest to itself.
+        vertex, corner = np.unique(faces, return_index=True)
+        face.append(corner // 3)
+        places.append(mesh.points[vertex])
         self.sample_face, self.samples = np.concatenate(face), np.concatenate(places)
 
     def at(self, rows: NDArray[np.float64], points: Points) -> NDArray[np.float64]:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from ...geometry.vectors import TIE
 from ...geometry.welded import WeldedMesh
 from ...graph import CutCellGraph
 from .closest import Points, Surface
@@ -51,7 +52,7 @@ def alternatives(
 ) -> Points:
     """Return closest points with those in other parts of the body that are little farther away.
 
-    Points farther away than a radius have no others.
+    Points farther away than a radius have no others, and points on the surface none that are not.
 
     A part consists of the vertices that are nearest to one landmark. Sorted by point and distance.
 
@@ -62,7 +63,8 @@ def alternatives(
     for number in np.unique(part):
         samples = np.flatnonzero(part == number)
         other = surface.nearest(points, samples, radius + farther)
-        results.append(other.subset(other.distance <= closest.distance[other.point] + farther))
+        least = closest.distance[other.point]
+        results.append(other.subset(other.distance <= np.where(least > TIE, least + farther, TIE)))
     every = Points(*map(np.concatenate, zip(*results, strict=True)))
     return every.subset(np.lexsort((every.distance, every.point)))
 

@@ -129,7 +129,7 @@ def transfer(
         Greatest distance of a match, as part of the diagonal of the source's bounding box.
     angle : float
         Greatest angle between the normals of a match, in degrees, 0 to 180. Normals do not count
-        within three tenths of the distance.
+        within three tenths of the distance, or a twentieth on components that mostly do not fit.
     flipped : bool
         Match opposite normals, too, such as those of the inside of layered cloth.
     joints : sequence of int or str, optional

@@ -11,6 +11,7 @@ from cutcell import ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, 
 from cutcell.editing.transfer import INPAINTED, MATCHED, REFUSED, UNCHANGED, matching
 from cutcell.editing.transfer.closest import Surface, barycentric
 from cutcell.editing.transfer.inpainting import inpaint
+from cutcell.editing.transfer.through import alternatives
 from tests.bars import bar, surface_of
 
 GAP = 0.01
@@ -97,6 +98,27 @@ def test_closest_points_are_those_of_a_search_of_all_faces(seed):
         assert least - 1e-12 <= distance <= least + 0.01 / 2
         sampled = np.linalg.norm(share @ corners[rng.integers(len(faces))] - point, axis=1).min()
         assert least <= sampled + 1e-12
+
+
+def test_the_vertex_of_a_large_face_among_small_ones_is_closest_to_itself():
+    small = sheet(0.0, 400)
+    large = np.array([[0.5, 0.001, 0.1], [-3, 4, 0], [4, 4, 0]])
+    count = len(small.vertices)
+    faces = np.vstack([small.faces, count + np.arange(3)])
+    mesh = TriangleMesh(np.vstack([small.vertices, large]), faces).welded
+    assert Surface(mesh, mesh.faces, 0.1).nearest(mesh.points).distance.max() < 1e-12
+
+
+def test_points_on_the_skin_of_one_limb_have_no_match_on_the_other():
+    mesh = limbs(0.2).mesh.welded
+    surface = Surface(mesh, mesh.faces, 0.02)
+    on_skin, beside = mesh.points, mesh.points + np.array([0, 0, 0.01])
+    by_limb = np.stack([mesh.points[:, 0], 1 - mesh.points[:, 0]], axis=1)
+    for points, others in [(on_skin, False), (beside, True)]:
+        closest = surface.nearest(points)
+        every = alternatives(surface, points, closest, by_limb, 0.1, 2 * GAP)
+        farther = every.distance > closest.distance[every.point] + 1e-9
+        assert farther.any() == others
 
 
 @pytest.mark.parametrize("other", [0.2, 0.5], ids=["legs together", "arm on hip"])
