@@ -1,12 +1,13 @@
 """What a person starts while weights are computed is completed beside them."""
 
 import re
+import time
 
 import pytest
 
 import cutcell
 from cutcell_assets import demo_path
-from tests.app.browser import GO
+from tests.app.browser import GO, LOAD_MS
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +30,8 @@ def test_exports_films_and_findings_come_though_weights_are_computed(visit, tmp_
     visit.page.get_by_role("tab", name="Pose", exact=True).click()
     visit.slide("About Z", "PageUp", 3)
     visit.settle()
-    while len(files) < 2:  # the browser saves a file a moment after the page is idle
+    end = time.monotonic() + LOAD_MS / 1000
+    while len(files) < 2 and time.monotonic() < end:  # files come a moment after the page is idle
         visit.page.wait_for_timeout(20)
     assert files.keys() == {".glb", ".gif"}
     assert files[".gif"].read_bytes().startswith(b"GIF8")
