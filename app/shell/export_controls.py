@@ -162,7 +162,7 @@ EXPORT = ui.folded(
         "Export GLB",
         _offering(actions.export_bound),
         icon="download",
-        disabled=lambda state: state.binding is None,
+        disabled=lambda state: _is_empty(state) or state.bare,  # weights that are due are waited for
         variant="contained",
     ),
     ui.row(
