@@ -27,7 +27,7 @@ from .page_weights import weights_table
 from .report import circumstances
 from .timing import Times
 
-OURS, THEIRS = "cutcell", "pn.pane.VTK"
+OURS, PEER = "cutcell", "pn.pane.VTK"
 
 Taken = dict[str, dict[str, list[float]]]
 
@@ -49,7 +49,7 @@ def tables(options: argparse.Namespace) -> Iterator[Table]:
 
 def _side_by_side(browser: Browser, options: argparse.Namespace) -> list[Table]:
     scene = material(options.resolution, options.vertices)
-    subjects = {OURS: cutcell_subject(scene), THEIRS: vtk_subject(scene)}
+    subjects = {OURS: cutcell_subject(scene), PEER: vtk_subject(scene)}
     times_of: Taken = {}
     moves: dict[str, list[float]] = {}
     with served(list(subjects.values()), options.port) as url:
@@ -104,12 +104,12 @@ def _moves(visitor: Visitor, name: str, play: float, moves: dict[str, list[float
 def _sooner(scene: Material, times_of: Taken) -> Table:
     table = Table(
         "Until it is seen",
-        ["", OURS, THEIRS, "speed-up"],
+        ["", OURS, PEER, "speed-up"],
         f"{scene.size}; {SIZE[0]}x{SIZE[1]} pixels. From the change in Python, or from asking "
         "for the address, to changed pixels: medians, the range in brackets, in turn.",
     )
     for what, by in times_of.items():
-        one, other = Times(tuple(by[OURS])), Times(tuple(by[THEIRS]))
+        one, other = Times(tuple(by[OURS])), Times(tuple(by[PEER]))
         table.add(what, one, other, ratio(other.median / one.median))
     return table
 

@@ -14,7 +14,7 @@ from cutcell_lab.networks.augmentation import (
     surface_shares,
     without_joints,
 )
-from cutcell_lab.networks.samples import KNOWN
+from cutcell_lab.networks.samples import STORED_NEIGHBOURS
 
 SEEDS = range(25)
 
@@ -24,8 +24,10 @@ def chain(count: int, spacing: float = 0.1) -> Sample:
     along = np.arange(count) * spacing
     points = np.column_stack([along, np.zeros((count, 2))]).astype(np.float32)
     joints = np.column_stack([np.linspace(0, along[-1], 4), np.zeros((4, 2))]).astype(np.float32)
-    order = np.argsort(np.abs(along[:, None] - along), axis=1, kind="stable")[:, 1 : KNOWN + 1]
-    own = np.repeat(np.arange(count)[:, None], KNOWN - order.shape[1], axis=1)
+    order = np.argsort(np.abs(along[:, None] - along), axis=1, kind="stable")[
+        :, 1 : STORED_NEIGHBOURS + 1
+    ]
+    own = np.repeat(np.arange(count)[:, None], STORED_NEIGHBOURS - order.shape[1], axis=1)
     nearest = np.abs(points[:, :1] - joints[:, 0]).argmin(axis=1)
     weights = np.eye(4, dtype=np.float32)[nearest]
     return Sample(
@@ -57,7 +59,7 @@ def test_weights_still_sum_to_one_and_all_fits_together(biped, seed):
         assert weights.shape == (count, joints)
         assert weights.min() >= 0
         np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-5)
-    assert sample.neighbours.shape == (count, KNOWN)
+    assert sample.neighbours.shape == (count, STORED_NEIGHBOURS)
     assert sample.neighbours.min() >= 0
     assert sample.neighbours.max() < count
     assert ((sample.parents >= -1) & (sample.parents < joints)).all()

@@ -16,7 +16,7 @@ from cutcell.errors import FileError
 
 from .storage import Storage
 
-KEPT_SECONDS = 15 * 60.0
+STORED_SECONDS = 15 * 60.0
 """Time that files are kept after their last use."""
 
 MB = 2**20
@@ -67,7 +67,7 @@ class Group:
 class UploadCache:
     """Groups of uploaded files, which are kept for some seconds after their last use."""
 
-    def __init__(self, storage: Storage | None = None, seconds: float = KEPT_SECONDS) -> None:
+    def __init__(self, storage: Storage | None = None, seconds: float = STORED_SECONDS) -> None:
         self.storage = storage or Storage()
         self._seconds = seconds
         self._lock = threading.Lock()

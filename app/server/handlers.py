@@ -46,7 +46,7 @@ FULL_OF_CLIENT = (
 )
 FULL = f"The limit of {MAX_SESSIONS} open pages is reached. {REMEDY}"
 
-KEPT_SECONDS = 365 * 24 * 3600
+CACHED_SECONDS = 365 * 24 * 3600
 """Lifetime in browsers' caches of files whose address contains their version."""
 TOKEN = "token-of-the-session"
 """Placeholder in the page's text of the part that differs for each visitor."""
@@ -257,4 +257,4 @@ class ImmutableFiles(StaticFileHandler):
 
     def get_cache_time(self, *args: Any) -> int:
         """Return for how many seconds."""
-        return KEPT_SECONDS
+        return CACHED_SECONDS

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """Errors of systems for a disk that is full, or full for this user."""
 
-KEPT = "Nothing was changed"
+UNCHANGED = "Nothing was changed"
 
 # A folder that begins at the root, with what follows it up to the last part.
 _FOLDERS = re.compile(r"(?<![\w.:/\\])(?:[A-Za-z]:)?[\\/](?:[^\s\\/\"':;,()]+[\\/])+(?=[^\s\\/])")
@@ -26,12 +26,12 @@ def error_text(error: BaseException) -> str:
     if isinstance(error, CutcellError):
         return sentence(visible_text(str(error)))
     if isinstance(error, MemoryError):
-        return f"Not enough memory. {KEPT}. Try a lower resolution or a smaller character."
+        return f"Not enough memory. {UNCHANGED}. Try a lower resolution or a smaller character."
     if isinstance(error, OSError) and error.errno in FULL:
-        return f"The server's disk is full. {KEPT}. Try again later."
+        return f"The server's disk is full. {UNCHANGED}. Try again later."
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return (
-        f"Unexpected error ({type(error).__name__}: {visible_text(reason)}). {KEPT}. "
+        f"Unexpected error ({type(error).__name__}: {visible_text(reason)}). {UNCHANGED}. "
         "Details are in the server's log."
     )
 

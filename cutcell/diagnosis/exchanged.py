@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..editing.symmetry import partners_by_name
 from ..rig.names import plain
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .leaks import pose_of
 from .subject import Subject, bones_distance
 from .weights import VISIBLE_WEIGHT
@@ -137,7 +137,7 @@ def _finding(
     names, order = {joint: subject.name(joint) for joint in pairs}, _order(subject, pairs)
     rows = subject.weights[vertices]
     each = [(a, b) for a, b in pairs.items() if pairs.get(b) != a or a < b]
-    yield from found(
+    yield from finding_of(
         code,
         vertices=vertices,
         joints=joints,

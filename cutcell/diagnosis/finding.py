@@ -123,7 +123,7 @@ class _Texts(Formatter):
         return count(int(number), *spec.split("/")) if len(spec) > 3 else format(number, spec)
 
 
-def found(
+def finding_of(
     code: str,
     *,
     severity: str = "",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..geometry.vectors import between, cross, dot, triangle_normal
 from ..runtime.compiled import compiled
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .subject import Subject
 
 MAX_TESTS = 5_000_000
@@ -28,7 +28,7 @@ def find_intersections(subject: Subject) -> Iterator[Finding]:
     is_crossed, is_whole = intersecting_faces(subject.mesh.points, subject.faces)
     crossed = subject.whole[is_crossed]
     least, part = "" if is_whole else "At least ", subject.area_share(crossed)
-    yield from found("self-intersections", faces=crossed, least=least, part=part)
+    yield from finding_of("self-intersections", faces=crossed, least=least, part=part)
 
 
 def intersecting_faces(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .subject import Subject
 
 NOTED_OUTSIDE, WARNED_OUTSIDE = 0.05, 0.15
@@ -25,7 +25,7 @@ def check_joints(subject: Subject) -> Iterator[Finding]:
     yield from _in_one_place(subject)
     if len(skeleton.joints) > 2 and (skeleton.parents < 0).all():
         every = np.arange(len(skeleton.joints))
-        yield from found("flat-hierarchy", joints=every, number=len(every))
+        yield from finding_of("flat-hierarchy", joints=every, number=len(every))
     yield from _idle(subject)
 
 
@@ -34,7 +34,7 @@ def _outside(subject: Subject) -> Iterator[Finding]:
     away = subject.joint_distance[moving]
     outside = away > NOTED_OUTSIDE
     unit = subject.graph.lattice.size
-    yield from found(
+    yield from finding_of(
         "joints-outside",
         severity="warning" if (away > WARNED_OUTSIDE).any() else "note",
         joints=moving[outside],
@@ -54,13 +54,13 @@ def _in_one_place(subject: Subject) -> Iterator[Finding]:
     is_short = np.linalg.norm(joints[children] - joints[above], axis=1) <= COINCIDENT_JOINTS
     short = children[is_short & skeleton.deform[children] & skeleton.deform[above]]
     details = [f'{name(j)}: on "{name(skeleton.parents[j])}"' for j in short]
-    yield from found("zero-length-bones", joints=short, details=details)
+    yield from finding_of("zero-length-bones", joints=short, details=details)
     moving = np.flatnonzero(skeleton.deform)
     pairs = moving[cKDTree(joints[moving]).query_pairs(COINCIDENT_JOINTS, output_type="ndarray")]
     is_link = (skeleton.parents[pairs] == pairs[:, ::-1]).any(axis=1)
     same = np.unique(pairs[~is_link])
     details = [*map(name, same)]
-    yield from found("coincident-joints", joints=same, details=details, number=len(same))
+    yield from finding_of("coincident-joints", joints=same, details=details, number=len(same))
 
 
 def _idle(subject: Subject) -> Iterator[Finding]:
@@ -68,7 +68,7 @@ def _idle(subject: Subject) -> Iterator[Finding]:
     rig, guess = subject.rig, subject.guess
     controls = np.flatnonzero(~guess.deform & ~rig.skeleton.deform)
     details = [f"{subject.name(j)}: {guess.reason[j]}" for j in controls]
-    yield from found("control-joints", joints=controls, details=details)
+    yield from finding_of("control-joints", joints=controls, details=details)
     if rig.weights is not None:
         unused = np.flatnonzero(guess.deform & ~rig.skeleton.deform)
-        yield from found("unused-joints", joints=unused, details=[*map(subject.name, unused)])
+        yield from finding_of("unused-joints", joints=unused, details=[*map(subject.name, unused)])

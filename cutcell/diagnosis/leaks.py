@@ -13,7 +13,7 @@ from ..geodesics.fallback import REACHED
 from ..geometry.triangles import label_components
 from ..rig.rows import least
 from ..runtime.display import count, share
-from .finding import Finding, Pose, found
+from .finding import Finding, Pose, finding_of
 from .subject import Subject
 from .weights import VISIBLE_WEIGHT, through_body
 
@@ -61,7 +61,7 @@ def _stray(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     if not len(stray):
         return
     stray = stray[np.argsort(-owned[stray], kind="stable")]
-    yield from found(
+    yield from finding_of(
         "stray-weights",
         vertices=np.flatnonzero((weights[:, stray] > 0).any(axis=1)),
         joints=np.sort(stray),
@@ -134,7 +134,7 @@ def _islands(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding
         return
     vertices = subject.vertices_at(np.concatenate(places))
     pose, at = pose_of(subject, worst[1], vertices), np.array(joints)
-    yield from found(
+    yield from finding_of(
         "weight-islands", vertices=vertices, joints=at, details=lines, pose=pose, change=change
     )
 
@@ -190,7 +190,7 @@ def _noisy(
         part = f"L1 {2 * change[region].mean():.2f}, {share(amount[region].sum(), 1)} of all weight"
         lines.append(f"{subject.name(joint)}: {number}, {part}")
     total, vertices = float(amount[places].sum()), subject.vertices_at(places)
-    yield from found(
+    yield from finding_of(
         "noisy-weights",
         severity="warning" if total > MUCH_NOISE else "note",
         vertices=vertices,
@@ -234,7 +234,7 @@ def _asymmetric(
     joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
     pose = pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric)
     change = subject.weight_share(asymmetric, apart[asymmetric])
-    yield from found(
+    yield from finding_of(
         "asymmetric-weights", vertices=asymmetric, joints=joints, pose=pose, change=change
     )
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..geometry.triangles import face_edges, unit_normals
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..graph.surface import WALL
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .intersections import find_intersections
 from .subject import Subject
 
@@ -38,9 +38,9 @@ def check_mesh(subject: Subject) -> Iterator[Finding]:
     """Look for faults of the surface."""
     yield from _stray(subject)
     inverted = np.flatnonzero(subject.graph.inverted)
-    yield from found("inverted-faces", faces=inverted, part=subject.area_share(inverted))
+    yield from finding_of("inverted-faces", faces=inverted, part=subject.area_share(inverted))
     walls = np.flatnonzero(subject.graph.omitted == WALL)
-    yield from found("hollow-body", faces=walls, part=subject.area_share(walls))
+    yield from finding_of("hollow-body", faces=walls, part=subject.area_share(walls))
     yield from _cracks(subject)
     yield from _open(subject)
     yield from _non_manifold(subject)
@@ -59,7 +59,7 @@ def _stray(subject: Subject) -> Iterator[Finding]:
     stray = used[away > STRAY_DISTANCE * size]
     if len(stray) <= MAX_STRAYS * len(used):
         farthest = away.max() / size if size else np.inf
-        yield from found("stray-vertices", vertices=stray, farthest=farthest)
+        yield from finding_of("stray-vertices", vertices=stray, farthest=farthest)
 
 
 def _cracks(subject: Subject) -> Iterator[Finding]:
@@ -86,7 +86,7 @@ def _cracks(subject: Subject) -> Iterator[Finding]:
     if is_closed.sum() < MIN_CRACK_EDGES:
         return
     at_crack = np.concatenate([loop[is_closed], following[is_closed]])
-    yield from found(
+    yield from finding_of(
         "cracks",
         severity="warning" if is_closed.sum() >= MANY_CRACKS * len(loop) else "note",
         vertices=subject.vertices_at(at_crack),
@@ -124,9 +124,9 @@ def _open(subject: Subject) -> Iterator[Finding]:
     is_hole &= is_hole.sum() >= HOLES
     at_hole = np.repeat(is_hole, lengths)
     holes = subject.vertices_at(loop[at_hole])
-    yield from found("holes", vertices=holes, holes=is_hole.sum())
+    yield from finding_of("holes", vertices=holes, holes=is_hole.sum())
     rims = subject.vertices_at(loop[~at_hole])
-    yield from found("rims", vertices=rims, rims=(~is_hole).sum(), edges=(~at_hole).sum())
+    yield from finding_of("rims", vertices=rims, rims=(~is_hole).sum(), edges=(~at_hole).sum())
 
 
 def _non_manifold(subject: Subject) -> Iterator[Finding]:
@@ -134,14 +134,14 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
     tangled = edges.edges[edges.uses > 2]
     is_tangled = np.isin(face_edges(subject.faces) @ code, tangled @ code)
     faces = subject.whole[is_tangled.reshape(-1, 3).any(axis=1)]
-    yield from found("non-manifold-edges", faces=faces, edges=len(tangled))
+    yield from finding_of("non-manifold-edges", faces=faces, edges=len(tangled))
 
 
 def _doubled(subject: Subject) -> Iterator[Finding]:
     # The two sides of a face are no duplicates.
     faces = _rolled(subject.faces)
     copies = np.delete(subject.whole, np.unique(faces, axis=0, return_index=True)[1])
-    yield from found("duplicate-faces", faces=copies)
+    yield from finding_of("duplicate-faces", faces=copies)
 
 
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -157,13 +157,13 @@ def _degenerate(subject: Subject) -> Iterator[Finding]:
     flat = ~subject.mesh.is_whole | (mesh.face_areas <= DEGENERATE_AREA * longest**2)
     degenerate = np.flatnonzero(flat & (subject.graph.omitted == 0))
     if len(degenerate) < len(subject.areas):
-        yield from found("degenerate-faces", faces=degenerate)
+        yield from finding_of("degenerate-faces", faces=degenerate)
 
 
 def _vertices(subject: Subject) -> Iterator[Finding]:
     faces, used = subject.rig.mesh.faces, subject.rig.mesh.used
     if len(used) >= UNWELDED * faces.size and len(faces) > 1:
         left = len(np.unique(subject.welded[used]))
-        yield from found("unwelded-vertices", vertices=used, used=len(used), left=left)
+        yield from finding_of("unwelded-vertices", vertices=used, used=len(used), left=left)
     unused = np.setdiff1d(np.arange(len(subject.welded)), used)
-    yield from found("unused-vertices", vertices=unused)
+    yield from finding_of("unused-vertices", vertices=unused)

@@ -16,7 +16,7 @@ from ..graph.winding.exact import winding_numbers_of
 from ..rig.deform_joints.conventions import kinds_by_name
 from ..rig.names import words
 from ..runtime.display import count, share
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .subject import Subject, bones_distance
 
 BARE_CELLS = 1.5
@@ -47,7 +47,7 @@ def check_parts(subject: Subject) -> Iterator[Finding]:
         yield from _thin(subject)
     else:
         used, resolution = np.flatnonzero(subject.is_used), subject.graph.lattice.resolution
-        yield from found("no-interior", vertices=used, resolution=resolution)
+        yield from finding_of("no-interior", vertices=used, resolution=resolution)
     if len(subject.rig.skeleton.joints):
         yield from _unreachable(subject)
         yield from _loose(subject)
@@ -82,7 +82,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     if enough > resolution:
         advice = f"A resolution of {enough} would fill most of them."
     vertices, covered = subject.vertices_at(thin), share(part, total)
-    yield from found(
+    yield from finding_of(
         "thin-parts", vertices=vertices, part=covered, resolution=resolution, advice=advice
     )
 
@@ -110,7 +110,7 @@ def _unreachable(subject: Subject) -> Iterator[Finding]:
     follows = "small components follow what they sit on"
     if is_large:
         follows = "they follow their nearest bones in a straight line"
-    yield from found(
+    yield from finding_of(
         "unreachable-vertices",
         severity="warning" if is_large else "note",
         vertices=lost,
@@ -120,7 +120,7 @@ def _unreachable(subject: Subject) -> Iterator[Finding]:
         advice="Let the component touch the body, or put a joint into it.",
     )
     barred = np.flatnonzero(subject.distances.fallback == NOT_ALLOWED)
-    yield from found(
+    yield from finding_of(
         "unreachable-vertices",
         vertices=barred,
         why=f"{count(len(barred), 'vertex')} cannot follow the joints that come near: the skin of "
@@ -135,7 +135,7 @@ def _loose(subject: Subject) -> Iterator[Finding]:
         return
     containment = bone_containment(subject.mesh, subject.distances.bones)
     loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
-    yield from found(
+    yield from finding_of(
         "boneless-components",
         vertices=subject.vertices_at(np.isin(subject.mesh.component, loose)),
         details=_lines(subject, loose),
@@ -185,7 +185,7 @@ def check_far_parts(subject: Subject) -> Iterator[Finding]:
         return
     far.sort(key=lambda one: -len(one[0]))
     vertices = np.sort(np.concatenate([part for part, _, _ in far]))
-    yield from found(
+    yield from finding_of(
         "far-parts",
         vertices=vertices,
         change=subject.weight_share(vertices),

@@ -13,7 +13,7 @@ from ..pose import axis_rotation
 from ..pose.stretch import MAX_SHARE, STRETCH_DEGREES, followed, measure_stretch, turned_edges
 from ..rig.rig import normalised
 from ..runtime.display import share
-from .finding import Finding, Pose, found
+from .finding import Finding, Pose, finding_of
 from .subject import Subject
 
 SWEEP_DEGREES = 45.0
@@ -110,7 +110,7 @@ def _poses(subject: Subject, follows: NDArray[np.float64]) -> Iterator[tuple[_Fa
 def _stretched_surface(subject: Subject) -> Iterator[Finding]:
     stretch = measure_stretch(subject.graph, subject.rig.skeleton, subject.weights)
     if stretch.share > MAX_SHARE and stretch.joint is not None:
-        yield from found(
+        yield from finding_of(
             "stretched-surface",
             vertices=stretch.vertices,
             joints=np.array([stretch.joint]),
@@ -125,7 +125,7 @@ def _torn(subject: Subject, follows: NDArray[np.float64]) -> Iterator[Finding]:
     torn = list(_torn_edges(subject, follows))
     vertices = subject.vertices_at(_joined(torn))
     evidence = _evidence(subject, torn, MIN_STRETCH, "by {} of the longest side")
-    yield from found("stretched-edges", vertices=vertices, times=TORN_EDGE, **evidence)
+    yield from finding_of("stretched-edges", vertices=vertices, times=TORN_EDGE, **evidence)
 
 
 def _torn_edges(subject: Subject, follows: NDArray[np.float64]) -> Iterator[_Fault]:
@@ -150,13 +150,13 @@ def _flipped(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
     faces = subject.whole[_joined(faults)]
     vertices = np.unique(subject.rig.mesh.faces[faces]).astype(np.intp)
     evidence = _evidence(subject, faults, FLIPPED, "{} of the surface")
-    yield from found("flipped-faces", vertices=vertices, faces=faces, **evidence)
+    yield from finding_of("flipped-faces", vertices=vertices, faces=faces, **evidence)
 
 
 def _lost(subject: Subject, faults: list[_Fault]) -> Iterator[Finding]:
     evidence = _evidence(subject, faults, LOST_VOLUME, "{} of the volume")
     follows = (subject.weights[:, evidence["joints"]] > MOVES).any(axis=1)
-    yield from found("lost-volume", vertices=np.flatnonzero(follows), **evidence)
+    yield from finding_of("lost-volume", vertices=np.flatnonzero(follows), **evidence)
 
 
 def _joined(faults: Iterable[_Fault]) -> NDArray[np.intp]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..geodesics.fallback import REACHED
 from ..io.weights import STORED_SUM_TOLERANCE
 from ..runtime.display import count
-from .finding import Finding, found
+from .finding import Finding, finding_of
 from .subject import Subject, bones_distance
 
 INFLUENCES = 4
@@ -39,15 +39,15 @@ def check_weights(subject: Subject) -> Iterator[Finding]:
 def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     sums = subject.rig.weight_sums
     sums = weights.sum(axis=1) if sums is None else sums
-    yield from found("invalid-weights", vertices=np.flatnonzero(np.isnan(sums)))
+    yield from finding_of("invalid-weights", vertices=np.flatnonzero(np.isnan(sums)))
     empty = np.flatnonzero((weights.sum(axis=1) == 0) & subject.is_used)
-    yield from found("unweighted-vertices", vertices=empty)
+    yield from finding_of("unweighted-vertices", vertices=empty)
     off = np.flatnonzero((np.abs(sums - 1) > STORED_SUM_TOLERANCE) & (sums > 0))
     low, high = sums[off].min(initial=np.inf), sums[off].max(initial=0)
-    yield from found("unnormalised-weights", vertices=off, low=low, high=high)
+    yield from finding_of("unnormalised-weights", vertices=off, low=low, high=high)
     influences = (weights > 0).sum(axis=1)
     many = np.flatnonzero(influences > INFLUENCES)
-    yield from found(
+    yield from finding_of(
         "many-influences", vertices=many, most=influences.max(initial=0), limit=INFLUENCES
     )
 
@@ -61,7 +61,9 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     places = len(np.unique(place[subject.is_used]))
     severity = "warning" if len(torn) > SEAMS * places else "note"
     vertices = subject.vertices_at(torn)
-    yield from found("torn-seams", severity=severity, vertices=vertices, torn=torn, places=places)
+    yield from finding_of(
+        "torn-seams", severity=severity, vertices=vertices, torn=torn, places=places
+    )
 
 
 def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
@@ -79,7 +81,7 @@ def _leaked(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]
     leaked &= np.isfinite(beyond)
     vertex, joint = vertex[leaked], joint[leaked]
     joints, number = np.unique(joint, return_counts=True)
-    yield from found(
+    yield from finding_of(
         "leaked-weights",
         vertices=np.unique(vertex),
         joints=joints,

@@ -74,13 +74,13 @@ class Segments:
         """Return the midpoints of some segments in the unit cube, shape (q, 3)."""
         return points_on_rays(self.ray[which], self.middle[which], self.resolution, self.axis)
 
-    def intervals(self, is_kept: NDArray[np.bool_]) -> InsideIntervals:
+    def intervals(self, is_inside: NDArray[np.bool_]) -> InsideIntervals:
         """Join consecutive kept segments within a gap."""
-        is_next = np.zeros(len(is_kept) + 1, np.bool_)
-        is_next[1:-1] = is_kept[1:] & is_kept[:-1] & ~self.from_hit[1:]
+        is_next = np.zeros(len(is_inside) + 1, np.bool_)
+        is_next[1:-1] = is_inside[1:] & is_inside[:-1] & ~self.from_hit[1:]
         is_next[1:-1] &= self.ray[1:] == self.ray[:-1]
-        begin = np.flatnonzero(is_kept & ~is_next[:-1])
-        end = np.flatnonzero(is_kept & ~is_next[1:])
+        begin = np.flatnonzero(is_inside & ~is_next[:-1])
+        end = np.flatnonzero(is_inside & ~is_next[1:])
         from_hit, to_hit = self.from_hit[begin], self.to_hit[end]
         return InsideIntervals(
             self.ray[begin],
@@ -170,11 +170,11 @@ def inside_intervals(
     return inside
 
 
-def gap_intervals(hits: RayHits, is_kept: NDArray[np.bool_], resolution: int) -> InsideIntervals:
+def gap_intervals(hits: RayHits, is_inside: NDArray[np.bool_], resolution: int) -> InsideIntervals:
     """Return the intervals of kept gaps, each before a hit, (c,); not those from a wall."""
     count = np.diff(hits.start)
-    is_kept[hits.start[:-1][count > 0]] = False
-    high = np.flatnonzero(is_kept).astype(np.int32)
+    is_inside[hits.start[:-1][count > 0]] = False
+    high = np.flatnonzero(is_inside).astype(np.int32)
     ray = np.repeat(np.arange(len(count), dtype=np.int32), count)[high]
     # As `first_at_least`.
     position, half = hits.position, 0.5

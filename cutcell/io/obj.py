@@ -207,9 +207,9 @@ def _corners(faces: _Lines) -> NDArray[np.int64]:
         pattern = f"-?[0-9]{{1,9}}{form.replace('N', '-?[0-9]{1,9}')}"
         # Nearly all files have one form, without numbers that are too long.
         if re.fullmatch(pattern, first) and re.fullmatch(rf"(?:{pattern}(?:\s+|\Z))*+", text):
-            found = np.fromstring(text.replace("/", " "), np.int64, sep=" ")
-            corners = np.zeros((len(found) // len(columns), 3), np.int64)
-            corners[:, columns] = found.reshape(-1, len(columns))
+            numbers = np.fromstring(text.replace("/", " "), np.int64, sep=" ")
+            corners = np.zeros((len(numbers) // len(columns), 3), np.int64)
+            corners[:, columns] = numbers.reshape(-1, len(columns))
             return corners
     parsed: dict[str, tuple[int, int, int]] = {}
     rows = []

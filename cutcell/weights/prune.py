@@ -35,15 +35,15 @@ def prune(
         _prune(part.start, part.stop, *rows, *options, pruned)
 
     in_threads(work, parts(weights.shape[0]), report)
-    kept = np.flatnonzero(pruned)
-    start = np.searchsorted(kept, weights.indptr)
-    return csr_array((pruned[kept], weights.indices[kept], start), weights.shape)
+    nonzero = np.flatnonzero(pruned)
+    start = np.searchsorted(nonzero, weights.indptr)
+    return csr_array((pruned[nonzero], weights.indices[nonzero], start), weights.shape)
 
 
 @compiled
 def _prune(first, last, begin, joint, weight, most, threshold, priority, scaled, pruned):
     """Prune some vertices, see `prune`. `pruned` is zero."""
-    entry_of, kept = np.full(len(priority), -1), np.empty(len(priority), np.intp)
+    entry_of, strongest = np.full(len(priority), -1), np.empty(len(priority), np.intp)
     for v in range(first, last):
         for e in range(begin[v], begin[v + 1]):
             entry_of[joint[e]] = e
@@ -54,20 +54,20 @@ def _prune(first, last, begin, joint, weight, most, threshold, priority, scaled,
                 continue
             if count < most:
                 count += 1
-            elif weight[e] <= weight[kept[count - 1]] + TIE:
+            elif weight[e] <= weight[strongest[count - 1]] + TIE:
                 continue
             rank = count - 1
-            while rank > 0 and weight[kept[rank - 1]] + TIE < weight[e]:
-                kept[rank] = kept[rank - 1]
+            while rank > 0 and weight[strongest[rank - 1]] + TIE < weight[e]:
+                strongest[rank] = strongest[rank - 1]
                 rank -= 1
-            kept[rank] = e
+            strongest[rank] = e
         # Now the largest come first.
         total = 0.0
         for k in range(count):
-            total += weight[kept[k]]
+            total += weight[strongest[k]]
         least = threshold * total
-        while count > 1 and weight[kept[count - 1]] < least:
+        while count > 1 and weight[strongest[count - 1]] < least:
             count -= 1
-            total -= weight[kept[count]]
+            total -= weight[strongest[count]]
         for k in range(count):
-            pruned[kept[k]] = weight[kept[k]] / total if scaled else weight[kept[k]]
+            pruned[strongest[k]] = weight[strongest[k]] / total if scaled else weight[strongest[k]]

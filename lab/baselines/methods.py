@@ -45,7 +45,7 @@ def _bind(rig: Rig, method: Method, resolution: int, options: dict[str, Any]) ->
     return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
 
 
-def known_options(method: Baseline, **options: Any) -> dict[str, Any]:
+def accepted_options(method: Baseline, **options: Any) -> dict[str, Any]:
     """Return the options that a method accepts."""
     parameters = signature(method).parameters
     every = any(one.kind is one.VAR_KEYWORD for one in parameters.values())

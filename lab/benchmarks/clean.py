@@ -102,7 +102,7 @@ DAMAGES = ("leaked across gaps", "noise", "islands")
 
 
 @dataclass
-class Found:
+class Cleaned:
     """One character: the change of the artist's own weights, and errors before and after."""
 
     name: str
@@ -111,14 +111,14 @@ class Found:
     errors: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
 
 
-def measure(rig: Rig, name: str, resolution: int, kinds: Sequence[str]) -> Found:
+def measure(rig: Rig, name: str, resolution: int, kinds: Sequence[str]) -> Cleaned:
     """Clean all weights of a character."""
     truth, shares = _weights(rig), vertex_shares(rig.mesh)
 
     def errors(weights: NDArray[np.float64]) -> tuple[float, float]:
         return weight_l1(weights, truth, shares), deformation_error(rig, weights, truth).mean
 
-    results = Found(name, *errors(cutcell.clean(rig, resolution).weights))
+    results = Cleaned(name, *errors(cutcell.clean(rig, resolution).weights))
     for kind in kinds:
         weights = KINDS[kind](rig, resolution)
         if weights is not None:
@@ -127,7 +127,7 @@ def measure(rig: Rig, name: str, resolution: int, kinds: Sequence[str]) -> Found
     return results
 
 
-def own_table(groups: dict[str, list[Found]]) -> Table:
+def own_table(groups: dict[str, list[Cleaned]]) -> Table:
     """Report the change of weights by artists."""
     columns = ["set", "characters", "unchanged", "L1 median", "L1 worst", "cm² worst", "worst"]
     note = f"The change of weights by artists; the limit is {ALLOWED} in L1."
@@ -146,7 +146,7 @@ def own_table(groups: dict[str, list[Found]]) -> Table:
     return table
 
 
-def error_table(groups: dict[str, list[Found]]) -> Table:
+def error_table(groups: dict[str, list[Cleaned]]) -> Table:
     """Say what cleaning does to each kind of weights."""
     columns = [
         "set",
@@ -183,7 +183,7 @@ def error_table(groups: dict[str, list[Found]]) -> Table:
     return table
 
 
-def each_table(groups: dict[str, list[Found]]) -> Table:
+def each_table(groups: dict[str, list[Cleaned]]) -> Table:
     """List the characters."""
     columns = ["character", "own", *KINDS]
     note = "L1: the change of the artist's own weights; of the others before and after."
@@ -250,7 +250,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     options = parser.parse_args(argv)
     if unknown := [name for name in options.sets if name not in SETS]:
         parser.error(f"no set {unknown[0]}; there are {', '.join(SETS)}")
-    groups: dict[str, list[Found]] = {}
+    groups: dict[str, list[Cleaned]] = {}
     rigs: dict[str, Rig] = {}
     for group in options.sets or SETS:
         for name, rig in characters(group):

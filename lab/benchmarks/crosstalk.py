@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 import cutcell
 from cutcell.graph import build_graph
 from cutcell_lab.baselines import METHODS, BaselineBinding
-from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.baselines.methods import accepted_options
 
 from ..metrics import crosstalk, find_gaps
 from .document import fill
@@ -65,7 +65,7 @@ def bound(
     method: Callable[..., BaselineBinding], rig: cutcell.Rig, resolution: int
 ) -> BaselineBinding:
     """Bind with those options that a method accepts."""
-    return method(rig, **known_options(method, resolution=resolution, max_influences=None))
+    return method(rig, **accepted_options(method, resolution=resolution, max_influences=None))
 
 
 def strongest(weights: NDArray[np.float64]) -> NDArray[np.float64]:

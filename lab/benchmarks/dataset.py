@@ -48,7 +48,7 @@ DOCUMENT = ROOT / "docs" / "dataset.md"
 DETAIL = 20
 """Sizes of generated characters: 300 to 700 vertices."""
 BROKEN = 10
-KINDS_HERE = [kind for kind in KINDS if kind != "person"]
+WITHOUT_PERSONS = [kind for kind in KINDS if kind != "person"]
 BIND = ("--quiet", "--resolution", "32")
 MODES = ("command", "runner", "worker", "scheduler")
 SEED = 18
@@ -68,7 +68,7 @@ def build_archive(path: Path, count: int, mark: Path) -> None:
     """Write an archive of the published form: some broken, some twice, one an attack."""
     entries: list[Any] = []
     for k in range(count):
-        rig = generate(KINDS_HERE[k % 5], k // 5, detail=DETAIL)
+        rig = generate(WITHOUT_PERSONS[k % 5], k // 5, detail=DETAIL)
         rows, columns = np.nonzero(rig.weights)
         children = np.flatnonzero(rig.skeleton.parents >= 0)
         plural = "s" if k % 2 else ""
@@ -395,7 +395,7 @@ def growth(count: int, folder: Path) -> list[Table]:
         for k in range(size):
             again = k % 5 == 4 and k > 50
             first = k // 2 if again else k
-            rig = stretched(generate(KINDS_HERE[first % 4], first // 4, detail=12), first)
+            rig = stretched(generate(WITHOUT_PERSONS[first % 4], first // 4, detail=12), first)
             begin = time.process_time()
             characters.append((normalised(rig, 2048, seed=k % 7), features_of(rig)))
             spent += time.process_time() - begin

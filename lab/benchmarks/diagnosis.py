@@ -67,8 +67,8 @@ def damaged_table(rigs: Sequence[cutcell.Rig], resolution: int) -> Table:
                 more = (Path(folder),) if damage in READING else ()
                 damaged = damage(rig, 7, *more)
                 after = cutcell.diagnose(damaged.rig, resolution)
-                is_found, cell = judge(code, damaged, before[rig.name], after)
-                detected, total = detected + is_found, total + 1
+                is_detected, cell = judge(code, damaged, before[rig.name], after)
+                detected, total = detected + is_detected, total + 1
                 cells.append(cell)
             table.add(name, code, *cells)
     table.add(f"**found: {detected} of {total}**", *[""] * (len(columns) - 1))
@@ -81,12 +81,12 @@ def judge(code: str, damaged: Damaged, before: Diagnosis, after: Diagnosis) -> t
     if code in after:
         named = getattr(after[code], damaged.kind)
         share = float(np.isin(damaged.elements, named).mean())
-    is_found = share >= 0.5
+    is_detected = share >= 0.5
     severity = after[code].severity if code in after else ""
-    cell = severity if is_found else f"**missed** ({share:.0%})"
+    cell = severity if is_detected else f"**missed** ({share:.0%})"
     expected = {f.code for f in before.findings if f.severity in SEVERE} | {code}
     others = [f.code for f in after.findings if f.severity in SEVERE and f.code not in expected]
-    return is_found, ", ".join([cell, *others])
+    return is_detected, ", ".join([cell, *others])
 
 
 def sound_table(paths: Sequence[Path], resolution: int) -> Table:

@@ -91,10 +91,10 @@ def fit(samples: Sequence[Sample]) -> HistGradientBoostingClassifier:
     features, strongest, weight = [], [], []
     for one in samples:
         part = min(1.0, OF_MAKER / total[one.maker])
-        kept = random.random(len(one.strongest)) < part
-        features.append(one.features[kept])
-        strongest.append(one.strongest[kept])
-        weight.append(np.full(kept.sum(), (part * total[one.maker]) ** -0.5))
+        chosen = random.random(len(one.strongest)) < part
+        features.append(one.features[chosen])
+        strongest.append(one.strongest[chosen])
+        weight.append(np.full(chosen.sum(), (part * total[one.maker]) ** -0.5))
     model = HistGradientBoostingClassifier(random_state=0, **TREES)
     learned = np.concatenate(weight)
     return model.fit(np.concatenate(features), np.concatenate(strongest), learned / learned.mean())

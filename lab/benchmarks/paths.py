@@ -33,11 +33,11 @@ OUTSIDE = PIECES.index("outside")
 
 
 @dataclass(frozen=True)
-class Found:
+class PathErrors:
     """Measures of one rig: the largest distances outside, in lattice cells, and others."""
 
     inside: float
-    told_outside: int
+    outside_count: int
     to_bone: float
     longer: float
     milliseconds: float
@@ -70,7 +70,7 @@ def samples_of(path: TracedPath, resolution: int) -> tuple[NDArray, NDArray]:
     return np.concatenate(points), np.repeat(path.kinds, counts)
 
 
-def measure(rig: cutcell.Rig, connectivity: int | str, paths: int, resolution: int) -> Found:
+def measure(rig: cutcell.Rig, connectivity: int | str, paths: int, resolution: int) -> PathErrors:
     """Trace random paths of one rig and measure them."""
     graph = cutcell.build_graph(rig.mesh, resolution, connectivity=connectivity)
     distances = cutcell.bone_distances(graph, rig.skeleton, leaf="fit")
@@ -91,9 +91,12 @@ def measure(rig: cutcell.Rig, connectivity: int | str, paths: int, resolution: i
             samples = samples_of(path, resolution)
             points.append(samples[0])
             kinds.append(samples[1])
-    away, is_told = outside_by(distances, np.concatenate(points)), np.concatenate(kinds) == OUTSIDE
-    most = away[~is_told].max(initial=0), outside_count, away[is_told].max(initial=0)
-    return Found(*most, longer, 1000 * spent / paths)
+    away, is_outside = (
+        outside_by(distances, np.concatenate(points)),
+        np.concatenate(kinds) == OUTSIDE,
+    )
+    most = away[~is_outside].max(initial=0), outside_count, away[is_outside].max(initial=0)
+    return PathErrors(*most, longer, 1000 * spent / paths)
 
 
 def path_table(
@@ -115,7 +118,7 @@ def path_table(
     for rig in rigs:
         for connectivity in connectivities:
             rows = measure(rig, connectivity, paths, resolution)
-            cells = rig.name, connectivity, f"{rows.inside:.2f}", rows.told_outside
+            cells = rig.name, connectivity, f"{rows.inside:.2f}", rows.outside_count
             more = f"{rows.to_bone:.2f}", f"{rows.longer:.1%}", f"{rows.milliseconds:.1f}"
             table.add(*cells, *more)
             print(*cells, *more, flush=True)

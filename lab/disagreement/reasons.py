@@ -52,7 +52,7 @@ NEXT = 2
 MM = 1000.0
 """Millimetres in the longest side, which counts as 1 m."""
 
-Found = Iterator[tuple[str, str]]
+NamedReasons = Iterator[tuple[str, str]]
 
 
 class Reasons:
@@ -104,7 +104,7 @@ class Reasons:
             f"{second}, with more in {self._names[1]}, {_mm(b)}."
         )
 
-    def _not_reached(self, vertices: NDArray[np.intp], joints: tuple[int, int]) -> Found:
+    def _not_reached(self, vertices: NDArray[np.intp], joints: tuple[int, int]) -> NamedReasons:
         fallback = self._measured.distances.fallback[vertices]
         if (fallback != REACHED).mean() < MOST:
             return
@@ -113,7 +113,7 @@ class Reasons:
             why = "no path through the body leads to this part of the mesh"
         yield "unreachable", f"Distances are those of straight lines: {why}."
 
-    def _attached(self, vertices: NDArray[np.intp], joints: tuple[int, int]) -> Found:
+    def _attached(self, vertices: NDArray[np.intp], joints: tuple[int, int]) -> NamedReasons:
         """Look for whole components that one of the weights moves as one piece."""
         measured = self._measured
         labels = np.unique(measured.component[vertices])
@@ -132,19 +132,21 @@ class Reasons:
             verb = "moves" if len(labels) == 1 else "move"
             yield "attached", f"{part} of the mesh {verb} as a whole {' and '.join(rigid)}."
 
-    def _without_distances(self, vertices: NDArray[np.intp], joints: tuple[int, int]) -> Found:
+    def _without_distances(
+        self, vertices: NDArray[np.intp], joints: tuple[int, int]
+    ) -> NamedReasons:
         for joint, has_weight in zip(joints, self._have_weight(joints), strict=True):
             if joint not in self._measured.distances.bones.joint:
                 yield "not-deforming", f"{has_weight} does not deform, so it has no distances."
             elif not self._measured.subject.measurable[joint]:
                 yield "outside", f"{has_weight} lies outside the body."
 
-    def _no_path(self, facts: Facts) -> Found:
+    def _no_path(self, facts: Facts) -> NamedReasons:
         for through, has_weight in zip(facts.through, self._have_weight(facts.joints), strict=True):
             if np.isinf(through):
                 yield "unreachable", f"{has_weight} no path through the body leads to it."
 
-    def _leak(self, facts: Facts) -> Found:
+    def _leak(self, facts: Facts) -> NamedReasons:
         for k, has_weight in enumerate(self._have_weight(facts.joints)):
             through, straight, other = facts.through[k], facts.straight[k], facts.through[1 - k]
             is_detour = through > DETOUR * straight and through - straight > MIN_DETOUR
@@ -160,19 +162,19 @@ class Reasons:
                 ),
             )
 
-    def _far(self, facts: Facts) -> Found:
+    def _far(self, facts: Facts) -> NamedReasons:
         for through, has_weight in zip(facts.through, self._have_weight(facts.joints), strict=True):
             if through - facts.nearest > FAR:
                 beyond = _mm(through - facts.nearest)
                 yield "far", f"{has_weight} is {beyond} farther than the nearest joint."
 
-    def _same_place(self, facts: Facts) -> Found:
+    def _same_place(self, facts: Facts) -> NamedReasons:
         gaps = [abs(a - b) * self._measured.cells for a, b in (facts.through, facts.straight)]
         if max(gaps) < CLOSE and self._measured.lie_together(facts.joints, TOGETHER):
             first, second = map(self._name, facts.joints)
             yield "same-place", f"{first} and {second} lie in one place, so distances are equal."
 
-    def _extent(self, facts: Facts) -> Found:
+    def _extent(self, facts: Facts) -> NamedReasons:
         for k, name in enumerate(self._names):
             joint = facts.joints[k]
             if facts.is_past_end[k] and self._measured.is_last(joint):
@@ -184,7 +186,7 @@ class Reasons:
                     ),
                 )
 
-    def _thin(self, facts: Facts) -> Found:
+    def _thin(self, facts: Facts) -> NamedReasons:
         if facts.depth * self._measured.cells > THIN:
             yield (
                 "thin",
@@ -194,7 +196,7 @@ class Reasons:
                 ),
             )
 
-    def _blend(self, facts: Facts) -> Found:
+    def _blend(self, facts: Facts) -> NamedReasons:
         measured = self._measured
         limit = 2 * facts.nearest + 2 / measured.cells + measured.bone_length(facts.joints) / 2
         if measured.steps_between(*facts.joints) <= NEXT and max(facts.through) < limit:
@@ -207,7 +209,7 @@ class Reasons:
                 ),
             )
 
-    def _equally_far(self, facts: Facts) -> Found:
+    def _equally_far(self, facts: Facts) -> NamedReasons:
         if max(facts.through) < EQUAL * max(min(facts.through), 1 / self._measured.cells):
             (a, b), (first, second) = facts.through, map(self._name, facts.joints)
             yield (

@@ -23,7 +23,7 @@ from cutcell.runtime.sources import PACKAGE, source_digest
 from cutcell.runtime.writing import write_all
 
 from ..baselines import METHODS, Baseline, BaselineBinding
-from ..baselines.methods import known_options
+from ..baselines.methods import accepted_options
 from ..dataset.read.sources import Source, find_sources, read_source
 from .recipe import PRIOR_NAMES
 from .samples import Sample, sample_rig
@@ -57,7 +57,7 @@ def prior_of(
     method = PRIORS[check_choice("prior", name, PRIORS)]
     if method is None:
         return None
-    options = known_options(method, resolution=resolution, progress=progress)
+    options = accepted_options(method, resolution=resolution, progress=progress)
     binding = method(rig, **options)
     if binding.weights is None:
         raise WeightsError(f"the prior {name} cannot be computed: {binding.failed}")

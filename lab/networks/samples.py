@@ -19,7 +19,7 @@ from ..metrics.deformation import longest_side
 
 RING, NEAR = 6, 16
 """Neighbours of a point: those for the one-ring, and those for the geodesic ball."""
-KNOWN = 64
+STORED_NEIGHBOURS = 64
 """Neighbours that are kept, so that enough are left among some of the points."""
 FAR = 0.25
 """Largest distance of neighbours along the surface, relative to the longest side."""
@@ -49,7 +49,7 @@ class Sample:
         Weights of another method; rows sum to one.
     target : array, shape (p, j), float32, or None
         The artist's weights.
-    neighbours : array, shape (p, KNOWN), int64
+    neighbours : array, shape (p, STORED_NEIGHBOURS), int64
         Other points, the nearest along the surface first; itself where there are no more.
     vertices : array, shape (p,), int64
         Which vertices of the rig the points are.
@@ -212,17 +212,17 @@ def bones_of(skeleton: Skeleton, chosen: NDArray) -> tuple[NDArray, NDArray, NDA
 
 
 def _along_surface(places: NDArray, faces: NDArray, chosen: NDArray) -> NDArray[np.int64]:
-    """Return the KNOWN nearest of the chosen vertices along mesh edges, (p, KNOWN)."""
+    """Return the nearest of the chosen vertices along mesh edges, (p, STORED_NEIGHBOURS)."""
     one, other = find_edges(faces.astype(np.int32)).edges.T
     length = np.linalg.norm(places[one] - places[other], axis=1)
     graph = coo_array((length, (one, other)), shape=(len(places), len(places))).tocsr()
-    nearest = np.empty((len(chosen), KNOWN), np.int64)
+    nearest = np.empty((len(chosen), STORED_NEIGHBOURS), np.int64)
     step = max(1, min(512, LENGTHS // len(places)))
     for begin in range(0, len(chosen), step):
         rows = np.arange(begin, min(begin + step, len(chosen)))
         away = dijkstra(graph, directed=False, indices=chosen[rows], limit=FAR)[:, chosen]
         away[np.arange(len(rows)), rows] = np.inf
-        count = min(KNOWN, len(chosen))
+        count = min(STORED_NEIGHBOURS, len(chosen))
         order = np.sort(np.argpartition(away, count - 1, axis=1)[:, :count], axis=1)
         lengths = np.take_along_axis(away, order, axis=1)
         by_length = np.argsort(lengths, axis=1, kind="stable")

@@ -25,7 +25,7 @@ from ..baselines.body import Body
 from ..baselines.frame import Run, bind_by
 from .priors import prior_of
 from .recipe import Recipe
-from .samples import KNOWN, LENGTHS
+from .samples import LENGTHS, STORED_NEIGHBOURS
 from .torch_required import check_torch
 
 LIMIT = 600.0
@@ -103,7 +103,7 @@ class TrainedNetwork:
             + size
             + 4 * count * joints * BYTES_PER_WEIGHT
             + 2 * min(512 * count, max(LENGTHS, count)) * 8
-            + points * KNOWN * 8
+            + points * STORED_NEIGHBOURS * 8
             + self.recipe.points * joints * HIDDEN_BYTES,
             f"a network that looks at {count:,} vertices and {joints:,} joints",
             "leave out vertices or joints",

@@ -51,7 +51,7 @@ class TestStaying:
         keep.leave(group.key)
         keep.sweep()
         assert group.paths[0].exists()
-        later = time.monotonic() + upload_cache.KEPT_SECONDS + 1
+        later = time.monotonic() + upload_cache.STORED_SECONDS + 1
         # Its own clock alone: event loops of other tests in this process go by the real one.
         monkeypatch.setattr(
             upload_cache, "time", SimpleNamespace(monotonic=lambda: later, sleep=time.sleep)

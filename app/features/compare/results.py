@@ -12,7 +12,7 @@ from cutcell.isolated.run import stoppable
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_lab.baselines import METHODS
-from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.baselines.methods import accepted_options
 from cutcell_lab.metrics import (
     DeformationError,
     deformation_error,
@@ -135,7 +135,7 @@ def _result(rig: Rig, name: str, binding: Any, resolution: int, progress: Progre
         return bind_setting(rig, settings(name), binding, lambda *_: progress(name, 0.5))
     method = METHODS[name]
     with stoppable(lambda: progress(name, 0.0)):
-        return method(rig, **known_options(method, resolution=resolution, progress=progress))
+        return method(rig, **accepted_options(method, resolution=resolution, progress=progress))
 
 
 def _inputs(state: State, name: str) -> tuple[Any, ...] | None:

@@ -15,7 +15,7 @@ NONE_OPEN = (
     "--pairs audit."
 )
 VERDICTS = {"As found": "", "Duplicates": DUPLICATE, "Different": DIFFERENT}
-FOUND = {
+LIKENESSES = {
     "copy": "A copy: the same surface with as many faces",
     "remeshed": "Remeshed: the same surface with other faces",
     "mirrored": "Mirrored",
@@ -46,7 +46,7 @@ def facts(state: State) -> str:
     if pair is None:
         return ""
     alike = pair.likeness
-    sentences = [FOUND[alike.kind]]
+    sentences = [LIKENESSES[alike.kind]]
     if pair.surface < float("inf"):
         sentences += [
             f"Chamfer distance of the surfaces {pair.surface:.2g} ({pair.tier}), of the joints "

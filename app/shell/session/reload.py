@@ -28,7 +28,7 @@ from ...document.opening import Request
 from ...document.selection import Selection, selected
 from ...document.session import BeforeLesson, Session
 from ...document.state import State
-from ...files.upload_cache import KEPT_SECONDS, MB
+from ...files.upload_cache import MB, STORED_SECONDS
 
 MAX_OF_A_PAGE = 32 * MB
 """Memory of the handover of a page that has ended; a longer history keeps its newest steps."""
@@ -130,7 +130,7 @@ class Pages:
 
     def __init__(
         self,
-        seconds: float = KEPT_SECONDS,
+        seconds: float = STORED_SECONDS,
         most: int = MAX_BYTES,
         most_of_a_page: int = MAX_OF_A_PAGE,
     ) -> None:

@@ -25,7 +25,7 @@ from ...graph.inside_edges import lattice_steps
 from ...graph.interior import OUTSIDE
 from ...runtime.compiled import compiled
 
-KEPT, UNKNOWN = -1, -2
+UNCONTRACTED, UNKNOWN = -1, -2
 """Instead of a representative: of nodes that are not contracted, or not yet known to be."""
 CORNERS = 3
 NO_BLOCK = -1
@@ -138,19 +138,19 @@ def _contract(
     number[node] = np.arange(len(node))
     contracted = np.flatnonzero(representative >= 0)
     number[contracted] = number[representative[contracted]]
-    kept_edges = np.empty_like(edges)
-    count = _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges)
-    # Kept nodes are below 0 here, and left out.
+    contracted_edges = np.empty_like(edges)
+    count = _keep_edges(nodes, edges, block, mesh, representative, number, contracted_edges)
+    # Uncontracted nodes are below 0, and left out.
     start, order = sort_by_group(representative[first_surface:] - mesh, len(block))
-    count = _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count)
-    indptr, indices, _ = list_neighbours(kept_edges[:count], np.empty(0), len(node))
+    count = _add_shortcuts(edges, ends, start, order, mesh, number, contracted_edges, count)
+    indptr, indices, _ = list_neighbours(contracted_edges[:count], np.empty(0), len(node))
     return indptr, indices, nodes[node], node, number, int(np.searchsorted(node, first_surface))
 
 
 def _find_representatives(
     edges: NDArray[np.int32], block: NDArray[np.int32], mesh: int, count: int
 ) -> NDArray[np.int32]:
-    """Return the representative of each contracted node; less than 0 for kept ones."""
+    """Return the representative of each contracted node; less than 0 for others."""
     representative = np.full(count, UNKNOWN, np.int32)
     in_block = np.flatnonzero((block != NO_BLOCK) & (block != np.arange(len(block))))
     representative[mesh + in_block] = mesh + block[in_block]
@@ -160,13 +160,13 @@ def _find_representatives(
     ).T
     single = np.bincount(crossing)[crossing] == 1
     single &= (other >= mesh) & (other < first_surface)
-    representative[crossing] = np.where(single, other, KEPT)
+    representative[crossing] = np.where(single, other, UNCONTRACTED)
     return representative
 
 
 @compiled
-def _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges):
-    """List the edges between kept nodes, and one edge between neighbouring blocks."""
+def _keep_edges(nodes, edges, block, mesh, representative, number, contracted_edges):
+    """List the edges between uncontracted nodes, and one edge between neighbouring blocks."""
     first_surface = mesh + len(block)
     count = 0
     for e in range(len(edges)):
@@ -179,7 +179,7 @@ def _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges):
             between = a != NO_BLOCK and b != NO_BLOCK
             if between and (a == b or not _in_line(nodes, mesh + a, u, v)):
                 continue
-        kept_edges[count, 0], kept_edges[count, 1] = number[u], number[v]
+        contracted_edges[count, 0], contracted_edges[count, 1] = number[u], number[v]
         count += 1
     return count
 
@@ -194,7 +194,7 @@ def _in_line(nodes, a, u, v):
 
 
 @compiled
-def _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count):
+def _add_shortcuts(edges, ends, start, order, mesh, number, contracted_edges, count):
     """List shortcuts from lattice points to corners, each once, from row `count` on.
 
     `order` from start[p] on are the surface nodes that the lattice point p represents. Edges of
@@ -205,9 +205,9 @@ def _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count):
         for c in order[start[p] : start[p + 1]]:
             for e in range(ends + CORNERS * c, ends + CORNERS * c + CORNERS):
                 k = first
-                while k < count and kept_edges[k, 1] != edges[e, 1]:
+                while k < count and contracted_edges[k, 1] != edges[e, 1]:
                     k += 1
                 if k == count:
-                    kept_edges[k, 0], kept_edges[k, 1] = number[mesh + p], edges[e, 1]
+                    contracted_edges[k, 0], contracted_edges[k, 1] = number[mesh + p], edges[e, 1]
                     count += 1
     return count

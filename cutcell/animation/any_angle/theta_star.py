@@ -115,7 +115,7 @@ def least_distances(
     bones: Bones,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
-    """Compute the distance of the nearest joint to each kept node, shape (K,)."""
+    """Compute the distance of the nearest joint to each uncontracted node, shape (K,)."""
     ranking = rank_bones(graph, contraction, bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(contraction.node), every, 1)
@@ -159,9 +159,9 @@ def _read(nodes, body, bones, labels, parents, each, targets, number, column, jo
     `number` holds the number of each joint by rank. A contracted node has line of sight to the
     parents of its representative.
     """
-    _, _, _, places, (_, node, kept), _ = body
+    _, _, _, places, (_, node, uncontracted), _ = body
     for t in range(len(targets)):
-        target, v = targets[t], kept[targets[t]]
+        target, v = targets[t], uncontracted[targets[t]]
         position = nodes[target, 0], nodes[target, 1], nodes[target, 2]
         for k in range(each):
             label = v * each + k

@@ -104,19 +104,19 @@ def _factorise(
         for k in range(border_begin[t], border_begin[t + 1]):
             local[border[k]] = high - low + k - border_begin[t]
         for i in range(high - low):
-            v, here = vertex[low + i], _row(at[t], width, i)
+            v, offset = vertex[low + i], _row(at[t], width, i)
             for e in range(start[v], start[v + 1]):
                 k = position[column[e]]
                 if k >= high:
-                    value[here + local[k]] += matrix[e]
+                    value[offset + local[k]] += matrix[e]
                 elif k >= low + i:
-                    value[here + k - low] += matrix[e]
+                    value[offset + k - low] += matrix[e]
     for t in range(blocks):
         low, first, last = begin[t], border_begin[t], border_begin[t + 1]
         size, width = begin[t + 1] - low, begin[t + 1] - low + last - first
         for i in range(size):
-            here = _row(at[t], width, i)
-            own = value[here + i : here + width]
+            offset = _row(at[t], width, i)
+            own = value[offset + i : offset + width]
             own[0] = max(own[0], least * matrix[start[vertex[low + i]]])
             for j in range(i + 1, size):
                 other = _row(at[t], width, j)
@@ -143,12 +143,12 @@ def _factorise(
                 for j in range(len(right)):
                     right[j] = 0.0
                 for i in range(size):
-                    here = _row(at[t], width, i)
-                    part = value[here + size + k - first : here + width]
-                    _subtract(right, part[0] * value[here + i], part)
-                here = _row(at[above], width_above, local[k - first])
+                    offset = _row(at[t], width, i)
+                    part = value[offset + size + k - first : offset + width]
+                    _subtract(right, part[0] * value[offset + i], part)
+                offset = _row(at[above], width_above, local[k - first])
                 for j in range(len(right)):
-                    value[here + local[k - first + j]] += right[j]
+                    value[offset + local[k - first + j]] += right[j]
                 k += 1
 
 
@@ -170,13 +170,13 @@ def _substitute(
         low, size, first = begin[t], begin[t + 1] - begin[t], border_begin[t]
         width = size + border_begin[t + 1] - first
         for i in range(size):
-            here = _row(at[t], width, i)
+            offset = _row(at[t], width, i)
             for j in range(i + 1, width):
                 k = low + j if j < size else border[first + j - size]
                 for c in range(LANES):
-                    x[k, c] -= value[here + j] * x[low + i, c]
+                    x[k, c] -= value[offset + j] * x[low + i, c]
             for c in range(LANES):
-                x[low + i, c] /= value[here + i]
+                x[low + i, c] /= value[offset + i]
     for t in range(blocks - 1, -1, -1):
         low, size, first = begin[t], begin[t + 1] - begin[t], border_begin[t]
         width = size + border_begin[t + 1] - first
@@ -190,11 +190,11 @@ def _substitute(
             if is_negligible[t]:
                 continue
         for i in range(size - 1, -1, -1):
-            here = _row(at[t], width, i)
+            offset = _row(at[t], width, i)
             for j in range(i + 1, width):
                 k = low + j if j < size else border[first + j - size]
                 for c in range(LANES):
-                    x[low + i, c] -= value[here + j] * x[k, c]
+                    x[low + i, c] -= value[offset + j] * x[k, c]
             for c in range(LANES):
                 if x[low + i, c] > negligible:
                     row[entries], lane[entries], entry[entries] = vertex[low + i], c, x[low + i, c]

@@ -102,14 +102,14 @@ def _flood(faces, partner, areas):
     for seed in range(len(faces)):
         if patch[seed] != NONE:
             continue
-        begin, is_consistent, as_is, kept_area = reached, True, True, 0.0
+        begin, is_consistent, as_is, signed_area = reached, True, True, 0.0
         queue[reached], patch[seed] = seed, count
         reached += 1
         done = begin
         while done < reached:
             f = queue[done]
             done += 1
-            kept_area += -areas[f] if flips[f] else areas[f]
+            signed_area += -areas[f] if flips[f] else areas[f]
             for half_edge in range(3 * f, 3 * f + 3):
                 other = partner[half_edge]
                 if other == NONE:
@@ -130,7 +130,7 @@ def _flood(faces, partner, areas):
         is_plain &= as_is
         for k in range(begin, begin if as_is else reached):
             f = queue[k]
-            flips[f] = is_consistent and flips[f] == (kept_area >= 0)
+            flips[f] = is_consistent and flips[f] == (signed_area >= 0)
         count += 1
     return flips, patch, is_plain and is_orientable, is_orientable
 

@@ -14,7 +14,7 @@ from cutcell.runtime.writing import check_place, write_all
 
 from .scores import Comparison
 
-OURS, THEIRS, INK, FAINT = "#d9660a", "#3f6fa3", "#22262d", "#d9dde3"
+OURS, PEER, INK, FAINT = "#d9660a", "#3f6fa3", "#22262d", "#d9dde3"
 WIDTH, ROW, EDGES = 9.0, 0.34, 1.55
 """Inches: of the figure, of a method, of what is above and below them."""
 ENDINGS = (".png", ".svg", ".pdf")
@@ -116,7 +116,7 @@ def _label(comparison: Comparison, method: str) -> str:
 
 
 def _color(method: str) -> str:
-    return OURS if method.startswith("cutcell") else THEIRS
+    return OURS if method.startswith("cutcell") else PEER
 
 
 def _heading() -> dict[str, Any]:

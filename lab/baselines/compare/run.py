@@ -17,7 +17,7 @@ from cutcell.runtime.progress import Progress, silent
 
 from ...metrics import METRICS, TURNED, Measured, Turned, find_gaps
 from .. import METHODS, Baseline, BaselineBinding
-from ..methods import known_options
+from ..methods import accepted_options
 from .scores import Comparison, MethodScore, RigScore
 
 GAP_RESOLUTION = 64
@@ -81,7 +81,7 @@ def _chosen(
     if not methods:
         raise ParameterError("there are no methods to compare")
     return {
-        name: partial(method, **known_options(method, **options))
+        name: partial(method, **accepted_options(method, **options))
         for name, method in methods.items()
     }
 

@@ -15,7 +15,7 @@ from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell_lab.baselines import METHODS
 from cutcell_lab.baselines.body import Body
-from cutcell_lab.baselines.methods import known_options
+from cutcell_lab.baselines.methods import accepted_options
 from cutcell_lab.baselines.visibility import Blockers
 from cutcell_lab.baselines.volumes.voxel_binding import path_lengths
 from cutcell_lab.baselines.volumes.voxels import PAD, mark_triangles, voxelize
@@ -51,9 +51,9 @@ def test_options_go_to_methods_that_know_them():
         return rig
 
     options = {"resolution": 8, "threshold": 0.1}
-    assert known_options(plain, **options) == {}
-    assert known_options(fine, **options) == {"resolution": 8}
-    assert known_options(all_of_them, **options) == options
+    assert accepted_options(plain, **options) == {}
+    assert accepted_options(fine, **options) == {"resolution": 8}
+    assert accepted_options(all_of_them, **options) == options
 
 
 @pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist"}))
