@@ -22,7 +22,7 @@ from ..locks import joint_index, lock_joints
 from .attachment import attach
 from .inpainting import inpaint
 from .matching import match
-from .names import joint_matrix
+from .names import joint_matrix, storable
 from .spaces import between, moved_mesh, with_skeleton
 
 MATCHED, INPAINTED, REFUSED, UNCHANGED = range(4)
@@ -146,7 +146,8 @@ def transfer(
     names : mapping of str to str, optional
         The target's joint by the source's, where the names differ; "" for none. Others are matched
         by equal names, then by names without name spaces and case. The weight of a joint without a
-        partner goes to the nearest joint above it that has one.
+        partner, or one that the vertex may not follow (`Rig.allowed`), goes to the nearest joint
+        above it that can take it.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph" and "weights".
 
@@ -199,7 +200,7 @@ def transfer(
     for rig, begin, end in zip(rigs, bounds[:-1], bounds[1:], strict=True):
         welded = index[begin:end]
         weights = rows[welded] @ joint_matrix(source.skeleton, source.weights, rig.skeleton, names)
-        weights = _few(weights, rig, max_influences)
+        weights = _few(storable(weights, rig), rig, max_influences)
         state = matches.state[welded]
         weights, is_unchanged = _merged(rig, weights, joints, mix, locked, mask, max_influences)
         results.append(

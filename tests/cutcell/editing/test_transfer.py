@@ -357,6 +357,23 @@ def test_skeletons_are_matched_by_names_with_exceptions(body):
     np.testing.assert_allclose(result[:, 0], plain[:, 1] + plain[:, 2], atol=1e-9)
 
 
+def test_no_vertex_follows_a_joint_that_its_file_cannot_store(body):
+    mesh = shell(body)
+    plain, right = cutcell.transfer(body, mesh).weights, mesh.vertices[:, 0] > 0.5
+    allowed = np.ones(plain.shape, bool)
+    allowed[right, 1] = allowed[~right, 0] = False  # joint 0 is above joint 1, none above joint 0
+    target = replace(body, mesh=mesh, weights=None, parts=(), allowed=allowed)
+    weights = cutcell.transfer(body, target).weights
+    assert plain[right, 1].any()
+    assert plain[~right, 0].any()
+    assert not weights[~allowed].any()
+    moved = (
+        np.where(right, plain[:, 0] + plain[:, 1], 0),
+        np.where(right, 0, plain[:, 0] + plain[:, 1]),
+    )
+    np.testing.assert_allclose(weights, np.stack([*moved, plain[:, 2]], axis=1), atol=1e-9)
+
+
 def test_a_level_of_detail_is_close_to_its_source(body):
     coarse = bar(10).mesh
     at = cKDTree(body.mesh.vertices).query(coarse.vertices)[1]
