@@ -20,7 +20,12 @@ class Rows(Clickable):
     def receive(self, message: Message) -> None:
         """Note the row under the pointer; report one that is clicked."""
         match message:
-            case PointAtRow(row):
-                self.pointed = row if 0 <= row < len(self.rows) else -1
-            case PickRow(row) if 0 <= row < len(self.rows):
+            case PointAtRow(name, nth):
+                self.pointed = self._place(name, nth)
+            case PickRow(name, nth) if (row := self._place(name, nth)) >= 0:
                 self.click(row)
+
+    def _place(self, name: str | None, nth: int) -> int:
+        """Return the number of the nth row of a name; -1 if there is none."""
+        rows = [row for row, (other, *_) in enumerate(self.rows) if other == name]
+        return rows[nth] if 0 <= nth < len(rows) else -1

@@ -9,9 +9,9 @@ from .modules import Clickable, script
 class WeightsTable(Clickable):
     """A page of a table of vertices; it reports sorting, paging, clicks on rows and edits.
 
-    Its content has "columns" (heading, whether cells are edited; vertices come first), "rows" and
-    "totals" (lists of numbers after a vertex or a name), "order" (the sorting column, whether the
-    largest come first) and "pages" (number of the page, and how many there are).
+    Its content has "columns" (heading, joint; what is below 0 is not edited; vertices come first),
+    "rows" and "totals" (lists of numbers after a vertex or a name), "order" (the sorting column,
+    whether the largest come first) and "pages" (number of the page, and how many there are).
     """
 
     content = param.Dict({}, doc="The table; empty for none.")

@@ -30,6 +30,7 @@ def test_what_is_seen_in_a_comparison_is_mended(visit):
     visit.panel("Compare")
     box(visit, "cutcell (animation)").uncheck()
     box(visit, "Current weights").check()
+    visit.settle()  # of two methods none can be removed
     box(visit, "Euclidean").uncheck()
     visit.button("Computed").click()
     visit.settle()
@@ -71,6 +72,7 @@ def methods_stand_side_by_side_with_their_measures(visit):
     assert changed(three, visit.look()) > 0.02
     expect(box(visit, "Bone heat")).to_be_disabled()
     box(visit, "Voxel binding, UniRig's").uncheck()
+    visit.settle()
     box(visit, "Euclidean").uncheck()
     visit.settle()
     assert captions(visit) == ["Current weights", "From file"]

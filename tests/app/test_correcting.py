@@ -442,10 +442,10 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 1 · {first}",
         f"Part 2 · {len(vertices) - first}",
     ]
-    rows._handle_msg({"type": "pick-row", "row": 0})
+    rows._handle_msg({"type": "pick-row", "name": rows.rows[0][0]})
     loop.rest(session)
     assert "attached" not in way.options.values(), "the body cannot follow itself"
-    rows._handle_msg({"type": "pick-row", "row": 1})
+    rows._handle_msg({"type": "pick-row", "name": rows.rows[1][0]})
     loop.rest(session)
     assert "attached" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
@@ -467,7 +467,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
     way.value = ""
     assert not session.state.edits
-    rows._handle_msg({"type": "pick-row", "row": 1})
+    rows._handle_msg({"type": "pick-row", "name": rows.rows[1][0]})
     assert session.state.part is None
 
 

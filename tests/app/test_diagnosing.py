@@ -297,14 +297,14 @@ def test_a_part_may_follow_what_it_touches_or_an_empty_or_the_nearest_joint(boun
 def test_what_a_part_would_follow_is_seen_under_the_pointer(bound, loop):
     rows, state = far_part(bound, loop), bound.state
     before = resolve(state)
-    rows._handle_msg({"type": "point-at-row", "row": 2})
+    rows._handle_msg({"type": "point-at-row", "name": rows.rows[2][0]})
     assert not state.edits.layers
     colors = resolve(state).actors["body"].colors
     wrist = weight_colors(state.rig, np.tile([0.0, 0.0, 1.0], (len(colors), 1)))[0]["colors"]
     np.testing.assert_array_equal(colors, wrist)
-    rows._handle_msg({"type": "point-at-row", "row": -1})
+    rows._handle_msg({"type": "point-at-row", "name": None})
     assert resolve(state).actors.keys() == before.actors.keys()
-    rows._handle_msg({"type": "point-at-row", "row": 0})
+    rows._handle_msg({"type": "point-at-row", "name": rows.rows[0][0]})
     rows.click(2)
     assert state.tried is None
 

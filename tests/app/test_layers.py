@@ -275,9 +275,9 @@ def test_the_panel_shows_the_stack_and_changes_the_chosen_layer(bound, loop):
     settled(bound, loop)
     assert state.edits.layers[0].opacity == 0.25
     check_bound_as_by_core(bound, arm_rig())
-    rows._handle_msg({"type": "pick-row", "row": 0})
+    rows._handle_msg({"type": "pick-row", "name": rows.rows[0][0]})
     assert state.layer is None
-    rows._handle_msg({"type": "pick-row", "row": 0})
+    rows._handle_msg({"type": "pick-row", "name": rows.rows[0][0]})
     buttons(section)["Delete"].clicks += 1
     assert not state.edits
 

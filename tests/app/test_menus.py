@@ -12,6 +12,7 @@ from cutcell_app.features.scenes import resolve
 from cutcell_app.shell import character
 from cutcell_app.shell.bone import BONE
 from cutcell_app.widgets.controls import draw, pick
+from cutcell_app.widgets.rows import Rows
 from cutcell_app.widgets.text import unique_names
 from cutcell_viewers.graph_scene import LAYERS
 from cutcell_viewers.palette import COLORMAPS, to_hex
@@ -93,3 +94,13 @@ def test_no_demo_is_opened_while_a_file_is_read(session, loop, monkeypatch, tmp_
     loop.run_until(lambda: session.state.rig is not None)
     assert (menu.value, next(iter(menu.options))) == ("~", "file.glb")
     assert opened == []
+
+
+def test_a_row_is_chosen_by_its_name_wherever_it_has_moved():
+    rows, chosen = Rows(rows=[("a", "", 0.0), ("b", "", 0.0)]), []
+    rows.on_click(chosen.append)
+    rows.rows = [("b", "", 0.0), ("a", "", 0.0), ("b", "", 0.0)]
+    rows._handle_msg({"type": "pick-row", "name": "b"})
+    rows._handle_msg({"type": "pick-row", "name": "b", "nth": 1})
+    rows._handle_msg({"type": "pick-row", "name": "gone"})
+    assert chosen == [0, 2]

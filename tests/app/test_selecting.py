@@ -18,7 +18,7 @@ from cutcell_app.editing.select import operations, saved, selections
 from cutcell_app.editing.select.controls import SELECTION, WEIGHT_SCALE
 from cutcell_app.editing.select.operations import OPERATIONS
 from cutcell_app.editing.select.selections import SELECTIONS
-from cutcell_app.editing.select.table import ROWS
+from cutcell_app.editing.select.table import FILE, ROWS, VERTEX
 from cutcell_app.features.scenes import resolve
 from cutcell_app.looks.histogram import BARS, bar_of
 from cutcell_app.shell.session import keys
@@ -377,8 +377,7 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
     assert table.content == {}
     state.table = True
     loop.rest(bound)
-    assert [title for title, _ in table.content["columns"]][:3] == ["Vertex", "elbow", "File"]
-    assert [edited for _, edited in table.content["columns"]][:3] == [False, True, False]
+    assert table.content["columns"][:3] == [["Vertex", VERTEX], ["elbow", 1], ["File", FILE]]
     assert len(table.content["rows"]) == min(ROWS, chosen.sum())
     weights = [row[1] for row in table.content["rows"]]
     assert weights == sorted(weights, reverse=True)
@@ -400,7 +399,7 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
         ROWS : 2 * ROWS
     ].tolist()
     vertex = table.content["rows"][0][0]
-    table._handle_msg({"type": "edit-weight", "vertex": vertex, "column": 1, "value": 0.25})
+    table._handle_msg({"type": "edit-weight", "vertex": vertex, "joint": 1, "value": 0.25})
     settled(bound, loop)
     assert state.weights[vertex, 1] == pytest.approx(0.25, abs=1 / STEPS)
     assert table.content["rows"][0][1] == 0.25

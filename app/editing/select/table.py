@@ -80,7 +80,7 @@ def table_parts(state: State) -> dict[str, Any]:
     rows = table.values[ROWS * page : ROWS * (page + 1)]
     weights = table.values[:, 1:]
     content = {
-        "columns": [[titles.get(j, "") or names[j], j >= 0] for j in table.columns],
+        "columns": [[titles.get(j, "") or names[j], j] for j in table.columns],
         "rows": [[int(row[0]), *(round(w, 4) for w in row[1:].tolist())] for row in rows],
         "totals": [
             ["Total", *(round(x, 4) for x in weights.sum(axis=0).tolist())],
@@ -120,7 +120,7 @@ def act(session: Session, message: Message) -> None:
             )
         case Page(page):
             state.table_page = max(page, 0)
-        case EditWeight(vertex, column, value):
-            edit(session, vertex, table.columns[column], value)
+        case EditWeight(vertex, joint, value) if 0 <= joint < state.rows.shape[1]:
+            edit(session, vertex, joint, value)
         case PickVertex(vertex):
             state.param.update(vertex=vertex, node=None)

@@ -62,11 +62,11 @@ type FromBrowser =
   | {type: 'offer'; index: number}  // A button of the step is pressed.
   | {type: 'choose-value'; name: string; value: any}  // A number in the step's text is changed.
   | {type: 'stage'; on: boolean}  // The lesson is presented or not.
-  | {type: 'pick-row'; row: number}  // A row is chosen.
-  | {type: 'point-at-row'; row: number}  // The pointer comes to a row; -1: it leaves.
+  | {type: 'pick-row'; name: string; nth?: number}  // A row is chosen: the nth of a name, since rows may move meanwhile.
+  | {type: 'point-at-row'; name: string | null; nth?: number}  // The pointer comes to a row, the nth of a name; null: it leaves.
   | {type: 'sort'; column: number}  // A heading of the table of weights is clicked.
   | {type: 'page'; page: number}  // Another page of it is wanted.
-  | {type: 'edit-weight'; vertex: number; column: number; value: number}  // A weight is edited.
+  | {type: 'edit-weight'; vertex: number; joint: number; value: number}  // A weight is edited.
   | {type: 'pick-bars'; first: number; last: number}  // Bars of the histogram are chosen.
   | {type: 'pick-point'; id: string}  // A point of a curve is chosen.
   | {type: 'show-method'; id: string; on: boolean}  // A method is shown or not.

@@ -7,22 +7,22 @@ const styled = await stylesheet("tables/weights_table.css")
 
 /** @param {{model: Model}} widget */
 export function render({model}) {
-  const cell = (vertex, value, column, [title, edited]) => {
+  const cell = (vertex, value, [title, joint]) => {
     const text = value.toFixed(3)
-    if (!edited) { return h("td", {}, text) }
+    if (joint < 0) { return h("td", {key: joint}, text) }
     const put = ({target: input}) => {
       const entered = Number(input.value.replace(",", "."))
       const is = input.value.trim() !== "" && entered >= 0 && entered <= 1
       if (!is || input.value === text) { input.value = text; return }
       input.defaultValue = input.value
-      model.send_msg({type: "edit-weight", vertex, column, value: entered})
+      model.send_msg({type: "edit-weight", vertex, joint, value: entered})
     }
     const keydown = (e) => {
       if (e.key === "Enter") { e.target.blur(); e.preventDefault() }
       if (e.key === "Escape") { e.target.value = text; e.target.blur(); e.stopPropagation() }
     }
-    return h("td", {}, numberBox(text, {
-      "type": "text", "inputmode": "decimal", "name": `cell-${vertex}-${column}`,
+    return h("td", {key: joint}, numberBox(text, {
+      "type": "text", "inputmode": "decimal", "name": `cell-${vertex}-${joint}`,
       "class": value === 0 ? "zero" : null, "onchange": put, "onkeydown": keydown,
       "aria-label": `Weight of ${title} at vertex ${vertex}`,
     }))
@@ -42,7 +42,7 @@ export function render({model}) {
       return h("tr", {key: vertex},
         h("th", {scope: "row"}, button(
           {name: `row-${vertex}`, title: "Show this vertex", onclick: pick}, vertex)),
-        values.map((value, i) => cell(vertex, value, i + 1, columns[i + 1])))
+        values.map((value, i) => cell(vertex, value, columns[i + 1])))
     }
     const total = ([name, ...values]) => h("tr", {}, h("th", {scope: "row"}, name),
       values.map((value) => h("td", {}, value.toFixed(name === "Total" ? 1 : 3))))

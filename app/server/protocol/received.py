@@ -254,15 +254,17 @@ class Stage(Message):
 
 
 class PickRow(Message):
-    """A row is chosen."""
+    """A row is chosen: the nth of a name, since rows may move meanwhile."""
 
-    row: int
+    name: str
+    nth: int = 0
 
 
 class PointAtRow(Message):
-    """The pointer comes to a row; -1: it leaves."""
+    """The pointer comes to a row, the nth of a name; null: it leaves."""
 
-    row: int
+    name: str | None
+    nth: int = 0
 
 
 class Sort(Message):
@@ -281,7 +283,7 @@ class EditWeight(Message):
     """A weight is edited."""
 
     vertex: int
-    column: int
+    joint: int
     value: float
 
 

@@ -17,11 +17,18 @@ test("a list reports clicks and the row under the pointer, and keeps the focus",
   const [, second] = root.querySelectorAll("button")
   second.focus()
   click(second)
-  assert.deepEqual(model.sent, [{type: "point-at-row", row: 1}, {type: "pick-row", row: 1}])
+  assert.deepEqual(model.sent, [
+    {type: "point-at-row", name: "b", nth: 0}, {type: "pick-row", name: "b", nth: 0},
+  ])
   model.change({rows: [["a", "3", 1], ["b", "4", 0.5], ["c", "5", 0]], chosen: 1})
   assert.equal(document.activeElement, second)
   assert.equal(second.getAttribute("aria-current"), "true")
   assert.equal(second.querySelector("b").textContent, "4")
+  model.change({rows: [["b", "6", 1], ["a", "3", 0.5], ["b", "5", 0]], chosen: 0})
+  assert.ok(root.querySelector("button") === second, "the button moves with its row")
+  model.sent.length = 0
+  for (const one of root.querySelectorAll("button")) { click(one) }
+  assert.deepEqual(model.sent.map(({name, nth}) => [name, nth]), [["b", 0], ["a", 0], ["b", 1]])
 })
 
 const METHOD = {
@@ -46,7 +53,7 @@ test("a table of methods reports boxes, and a note describes its box", () => {
 })
 
 const CONTENT = {
-  columns: [["Vertex", false], ["hips", true], ["file", false]], rows: [[3, 0.25, 0], [7, 0, 1]],
+  columns: [["Vertex", -1], ["hips", 4], ["file", -2]], rows: [[3, 0.25, 0], [7, 0, 1]],
   totals: [["Total", 0.25, 1]], order: [0, false], pages: [1, 3],
 }
 
@@ -59,12 +66,25 @@ test("a table sorts, turns pages, chooses and edits", () => {
   click(find("row-7"))
   assert.deepEqual(model.sent.splice(0), [
     {type: "sort", column: 1}, {type: "page", page: 2}, {type: "pick-vertex", vertex: 7}])
-  const cell = find("cell-3-1")
+  const cell = find("cell-3-4")
   for (const [text, sent] of [["0,5", [0.5]], ["2", []], ["x", []], ["", []]]) {
     cell.value = text
     cell.dispatchEvent(new Event("change"))
     assert.deepEqual(model.sent.splice(0).map(({value}) => value), sent)
   }
+})
+
+test("an edit is of the joint that it was written for, though its column moves", () => {
+  const model = modelOf({label: "Weights", content: CONTENT})
+  const root = shown(table, model)
+  const cell = root.querySelector("[name='cell-3-4']")
+  cell.focus()
+  cell.value = "0.7"
+  const columns = [["Vertex", -1], ["spine", 5], ["hips", 4]]
+  model.change({content: {...CONTENT, columns, rows: [[3, 0.75, 0.25], [7, 1, 0]]}})
+  assert.equal(document.activeElement, cell)
+  cell.dispatchEvent(new Event("change"))
+  assert.deepEqual(model.sent, [{type: "edit-weight", vertex: 3, joint: 4, value: 0.7}])
 })
 
 test("a cell follows its weight, but not over what is being written", () => {
