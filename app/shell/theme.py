@@ -21,7 +21,7 @@ _SHEET = {
         "width": "100% !important",
         "height": f"{SHEET} !important",
         "maxHeight": SHEET,
-        "borderRadius": "16px 16px 0 0",
+        "borderTop": "1px solid var(--mui-palette-divider)",
         "boxShadow": "0 -4px 20px rgba(10, 20, 40, .18)",
     },
 }
