@@ -162,9 +162,7 @@ EXPORT = ui.folded(
         "Export GLB",
         _offering(actions.export_bound),
         icon="download",
-        disabled=lambda state: (
-            _is_empty(state) or state.bare
-        ),  # weights that are due are waited for
+        disabled=lambda state: _is_empty(state) or state.bare,  # it waits for weights
         variant="contained",
     ),
     ui.row(

@@ -75,7 +75,7 @@ class Segments:
         return points_on_rays(self.ray[which], self.middle[which], self.resolution, self.axis)
 
     def intervals(self, is_inside: NDArray[np.bool_]) -> InsideIntervals:
-        """Join consecutive kept segments within a gap."""
+        """Join consecutive segments inside, within a gap."""
         is_next = np.zeros(len(is_inside) + 1, np.bool_)
         is_next[1:-1] = is_inside[1:] & is_inside[:-1] & ~self.from_hit[1:]
         is_next[1:-1] &= self.ray[1:] == self.ray[:-1]
@@ -171,7 +171,7 @@ def inside_intervals(
 
 
 def gap_intervals(hits: RayHits, is_inside: NDArray[np.bool_], resolution: int) -> InsideIntervals:
-    """Return the intervals of kept gaps, each before a hit, (c,); not those from a wall."""
+    """Return the intervals of gaps inside, each before a hit, (c,); not those from a wall."""
     count = np.diff(hits.start)
     is_inside[hits.start[:-1][count > 0]] = False
     high = np.flatnonzero(is_inside).astype(np.int32)

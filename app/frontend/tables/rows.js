@@ -10,7 +10,7 @@ export function render({model}) {
   const point = (row) => () => model.points && model.send_msg({type: "point-at-row", ...row})
   const away = point({name: null})
   const item = ([name, note, part], place) => {
-    // A row is known by its name: the server may have moved it.
+    // Its name identifies a row, which the server may have moved.
     const nth = model.rows.slice(0, place).filter(([other]) => other === name).length
     const row = {name, nth}
     return h("li", {key: `${nth} ${name}`}, button({

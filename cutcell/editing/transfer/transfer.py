@@ -147,7 +147,7 @@ def transfer(
         The target's joint by the source's, where the names differ; "" for none. Others are matched
         by equal names, then by names without name spaces and case. The weight of a joint without a
         partner, or one that the vertex may not follow (`Rig.allowed`), goes to the nearest joint
-        above it that can take it.
+        above it that can take it; of the latter, to the nearest joint if none above can.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph" and "weights".
 
