@@ -219,6 +219,14 @@ class SocketHandler(WSHandler):
         self._clients[self._client] += 1
         super().open(*args, **more)
 
+    def ping(self, data: str | bytes = b"") -> None:
+        """Send a ping, unless the websocket is closed and `on_close` has yet to be called.
+
+        An error would let Bokeh take the session away before the last messages are handled.
+        """
+        if self.ws_connection is None or not self.ws_connection.is_closing():
+            super().ping(data)
+
     def on_close(self) -> None:
         """Count one page of the client less."""
         if self._is_counted:

@@ -123,6 +123,22 @@ def test_closed_connections_and_websockets_are_not_counted(here, opened):
     visitor.close()
 
 
+def test_a_ping_to_a_closed_websocket_leaves_its_end_to_on_close(here, opened, caplog):
+    wait_until(lambda: here.is_left)
+    opened(here.port, here.handshake(here.address))
+    tornado = here.server._tornado
+    wait_until(lambda: tornado._clients)
+
+    def close_and_ping():
+        for client in list(tornado._clients):
+            client._socket.ws_connection.stream.close()
+        tornado._keep_alive()
+
+    here.server.io_loop.add_callback(close_and_ping)
+    wait_until(lambda: here.is_left and not tornado._clients)
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
+
+
 def test_websockets_that_share_a_session_are_limited(here, opened, monkeypatch):
     wait_until(lambda: here.is_left)
     token = here.token()
