@@ -392,7 +392,7 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
     assert [row[1] for row in table.content["rows"]] == sorted(state.weights[chosen, 1].round(4))[
         :ROWS
     ]
-    table._handle_msg({"type": "sort", "column": 0})
+    table._handle_msg({"type": "sort", "column": VERTEX})
     table._handle_msg({"type": "page", "page": 1})
     loop.rest(bound)
     assert [row[0] for row in table.content["rows"]] == np.flatnonzero(chosen)[
@@ -408,6 +408,25 @@ def test_the_table_shows_sorts_and_edits_weights(bound, loop):
     keys.act(bound, "select none")
     loop.rest(bound)
     assert table.content == {}
+
+
+def test_the_table_stays_sorted_by_a_joint_whose_column_moves(bound, loop):
+    state = bound.state
+    state.param.update(joint=0, table=True)
+    some(bound, 0.6)
+    (table,) = draw(bound, SELECTION).select(WeightsTable)
+    loop.rest(bound)
+    places = []
+    table._handle_msg({"type": "sort", "column": 1})
+    for joint in (0, 2, 1):
+        state.joint = joint
+        loop.rest(bound)
+        columns = [column for _, column in table.content["columns"]]
+        places.append(columns.index(1))
+        weights = [row[columns.index(1)] for row in table.content["rows"]]
+        assert weights == sorted(weights, reverse=True)
+        assert table.content["order"] == [1, True]
+    assert len(set(places)) > 1
 
 
 def test_bars_of_the_histogram_hold_the_vertices_of_their_weights(bound, loop):

@@ -25,7 +25,7 @@ class Choices(param.Parameterized):
     copied_mask: Any = param.Parameter(None, doc="A mesh, and strengths (n,) that were copied.")
     table = param.Boolean(False, label="Table")
     table_order: Any = param.Parameter(
-        (1, True), doc="Column of the table that sorts it, and whether the largest come first."
+        (None, True), doc="Column that sorts the table (None: the chosen joint), and if downwards."
     )
     table_page = param.Integer(0)
     histogram = param.Boolean(False, label="Histogram")

@@ -32,11 +32,14 @@ class Table:
     ----------
     columns : list of int
         Joints, or `VERTEX` or `FILE`.
+    sorted_by : int
+        One of the columns.
     values : array, shape (v, c)
         In the order of the rows.
     """
 
     columns: list[int]
+    sorted_by: int
     values: NDArray[np.float64]
 
 
@@ -57,8 +60,11 @@ def table_of(state: State) -> Table | None:
     columns += most
     table = np.stack([*values, *(weights[:, j] for j in most)], axis=1)
     column, largest_first = state.table_order
-    key = table[:, min(column, len(columns) - 1)]
-    return Table(columns, table[np.argsort(-key if largest_first else key, kind="stable")])
+    sorted_by = column if column in columns else joint
+    key = table[:, columns.index(sorted_by)]
+    return Table(
+        columns, sorted_by, table[np.argsort(-key if largest_first else key, kind="stable")]
+    )
 
 
 def _table(state: State) -> Table | None:
@@ -86,7 +92,7 @@ def table_parts(state: State) -> dict[str, Any]:
             ["Total", *(round(x, 4) for x in weights.sum(axis=0).tolist())],
             ["Mean", *(round(x, 4) for x in weights.mean(axis=0).tolist())],
         ],
-        "order": list(state.table_order),
+        "order": [table.sorted_by, state.table_order[1]],
         "pages": [page, pages],
     }
     return {"content": content}
@@ -113,9 +119,11 @@ def act(session: Session, message: Message) -> None:
         return
     match message:
         case Sort(column):
-            before, largest_first = state.table_order
+            largest_first = (
+                not state.table_order[1] if column == table.sorted_by else column != VERTEX
+            )
             state.param.update(
-                table_order=(column, not largest_first if column == before else column > 0),
+                table_order=(None if column == state.joint else column, largest_first),
                 table_page=0,
             )
         case Page(page):

@@ -30,7 +30,7 @@ export function render({model}) {
   const draw = () => {
     const {columns = [], rows = [], totals = [], order = [], pages: turns = [0, 0]} = model.content
     const [[sorted, down], [page, pages]] = [order, turns]
-    const heading = ([title], column) => {
+    const heading = ([title, column]) => {
       const is = column === sorted
       const sort = () => model.send_msg({type: "sort", column})
       return h("th", {"scope": "col", "aria-sort": is ? (down ? "descending" : "ascending") : null},

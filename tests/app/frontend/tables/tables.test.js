@@ -54,18 +54,18 @@ test("a table of methods reports boxes, and a note describes its box", () => {
 
 const CONTENT = {
   columns: [["Vertex", -1], ["hips", 4], ["file", -2]], rows: [[3, 0.25, 0], [7, 0, 1]],
-  totals: [["Total", 0.25, 1]], order: [0, false], pages: [1, 3],
+  totals: [["Total", 0.25, 1]], order: [-1, false], pages: [1, 3],
 }
 
 test("a table sorts, turns pages, chooses and edits", () => {
   const model = modelOf({label: "Weights", content: CONTENT})
   const root = shown(table, model)
   const find = (name) => root.querySelector(`[name="${name}"]`)
-  click(find("sort-1"))
+  click(find("sort-4"))
   click(root.querySelector("[aria-label='Next page']"))
   click(find("row-7"))
   assert.deepEqual(model.sent.splice(0), [
-    {type: "sort", column: 1}, {type: "page", page: 2}, {type: "pick-vertex", vertex: 7}])
+    {type: "sort", column: 4}, {type: "page", page: 2}, {type: "pick-vertex", vertex: 7}])
   const cell = find("cell-3-4")
   for (const [text, sent] of [["0,5", [0.5]], ["2", []], ["x", []], ["", []]]) {
     cell.value = text
