@@ -178,7 +178,7 @@ class _Parser:
         if not deform:
             name = self._rig.skeleton.names[joints[0]]
             raise ParameterError(f'"{name}" carries no weight, so there is no distance to it')
-        return np.min([self._distances.on_mesh(joint) * size for joint in deform], axis=0)
+        return np.stack([self._distances.on_mesh(joint) for joint in deform]).min(axis=0) * size
 
     def _named(self) -> list[int]:
         """Read the name of a joint, without quotes the longest that the skeleton has; or a pattern.

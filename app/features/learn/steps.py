@@ -234,7 +234,7 @@ def painted_scores(state: State) -> dict[str, float]:
 
 def _agreement(painted: NDArray[np.bool_], weights: NDArray[np.float64]) -> float:
     moves = weights > 0.5
-    return float((painted & moves).sum() / max((painted | moves).sum(), 1))
+    return float((painted & moves).sum()) / max(int((painted | moves).sum()), 1)
 
 
 def branch_weights(

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints, is_typeddict
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import received, sent
 
@@ -16,11 +17,9 @@ DECLARATIONS = Path(__file__).parents[2] / "frontend/common/messages.d.ts"
 PLAIN: dict[Any, str] = {
     Any: "any", bool: "boolean", bytes: "ArrayBuffer", float: "number", int: "number",
     str: "string", type(None): "null", sent.Numbers: "Iterable<number>", sent.Vector: "Vector",
-    received.Vector: "Vector",
-}  # fmt: skip
-ARRAYS = {
-    np.float64: "Float64Array", np.float32: "Float32Array", np.uint8: "Uint8Array",
-    np.uint16: "Uint16Array", np.uint32: "Uint32Array",
+    received.Vector: "Vector", NDArray[np.float64]: "Float64Array",
+    NDArray[np.float32]: "Float32Array", NDArray[np.uint8]: "Uint8Array",
+    NDArray[np.uint16]: "Uint16Array", NDArray[np.uint32]: "Uint32Array",
 }  # fmt: skip
 
 
@@ -57,8 +56,6 @@ def _type(hint: Any) -> str:
         return PLAIN[hint]
     if is_typeddict(hint):
         return str(hint.__name__)
-    if origin is np.ndarray:
-        return ARRAYS[get_args(parts[1])[0]]
     if origin is Literal:
         return " | ".join(f"'{one}'" for one in parts)
     if hint in (sent.Numbers | None,):
