@@ -25,7 +25,7 @@ class Choices(param.Parameterized):
     copied_mask: Any = param.Parameter(None, doc="A mesh, and strengths (n,) that were copied.")
     table = param.Boolean(False, label="Table")
     table_order: Any = param.Parameter(
-        (None, True), doc="Column that sorts the table (None: the chosen joint), and if downwards."
+        (None, True), doc="What sorts the table (None: the chosen joint), and whether descending."
     )
     table_page = param.Integer(0)
     histogram = param.Boolean(False, label="Histogram")

@@ -64,7 +64,7 @@ type FromBrowser =
   | {type: 'stage'; on: boolean}  // The lesson is presented or not.
   | {type: 'pick-row'; name: string; nth?: number}  // A row is chosen: the nth of a name, since rows may move meanwhile.
   | {type: 'point-at-row'; name: string | null; nth?: number}  // The pointer comes to a row, the nth of a name; null: it leaves.
-  | {type: 'sort'; column: number}  // A heading of the table of weights is clicked: that of a joint, or a number below zero.
+  | {type: 'sort'; column: number}  // A heading of the table of weights is clicked: of a joint, or of a column below zero.
   | {type: 'page'; page: number}  // Another page of it is wanted.
   | {type: 'edit-weight'; vertex: number; joint: number; value: number}  // A weight is edited.
   | {type: 'pick-bars'; first: number; last: number}  // Bars of the histogram are chosen.

@@ -10,7 +10,7 @@ export function render({model}) {
   const point = (row) => () => model.points && model.send_msg({type: "point-at-row", ...row})
   const away = point({name: null})
   const item = ([name, note, part], place) => {
-    // Its name identifies a row, which the server may have moved.
+    // A row is identified by its name, since the server may have moved it.
     const nth = model.rows.slice(0, place).filter(([other]) => other === name).length
     const row = {name, nth}
     return h("li", {key: `${nth} ${name}`}, button({

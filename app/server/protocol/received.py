@@ -268,7 +268,7 @@ class PointAtRow(Message):
 
 
 class Sort(Message):
-    """A heading of the table of weights is clicked: that of a joint, or a number below zero."""
+    """A heading of the table of weights is clicked: of a joint, or of a column below zero."""
 
     column: int
 
